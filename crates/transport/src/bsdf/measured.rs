@@ -128,7 +128,8 @@ impl Measured {
         let facet = [across(theta), atan2_turns(h.y, h.x) + 0.5];
         let (place, of_normals) = brdf.vndf().invert(slices, facet);
         let density = of_normals * brdf.luminance().density(slices, place) / turned(theta, h, viewer.wo.dot(h));
-        if density <= 0.0 {
+        // It is infinite where both directions lie along the surface, opposite to each other.
+        if !(density > 0.0 && density.is_finite()) {
             return None;
         }
         let facets = brdf.facets(facet, viewer.place)?;

@@ -275,7 +275,7 @@ impl Bsdf {
     }
 
     /// What it is without a tint.
-    fn untinted(&self) -> &Self {
+    pub(crate) fn untinted(&self) -> &Self {
         match self {
             Self::Tinted(tinted) => tinted.bsdf().untinted(),
             bsdf => bsdf,

@@ -160,7 +160,7 @@ impl GuidedTargets {
             .collect();
         // With whether they bend light.
         let mut bodies: Vec<(GuidedTarget, bool)> =
-            bodies.into_iter().map(|(body, bsdf)| (body, matches!(bsdf, Bsdf::Dielectric(_)))).collect();
+            bodies.into_iter().map(|(body, bsdf)| (body, matches!(bsdf.untinted(), Bsdf::Dielectric(_)))).collect();
         bodies.sort_by(|a, b| b.0.size().total_cmp(&a.0.size()));
         bodies.truncate(MOST_BODIES);
         balls.sort_by(|a, b| b.0.radius.total_cmp(&a.0.radius));
@@ -168,7 +168,7 @@ impl GuidedTargets {
         let lamps = if balls.is_empty() { Vec::new() } else { lamps(surfaces, geometry, lights, range_nm) };
         let lamps = &lamps;
         let shown = balls.iter().flat_map(|&(ball, bsdf)| {
-            let shows = match bsdf {
+            let shows = match bsdf.untinted() {
                 Bsdf::Mirror(_) | Bsdf::Conductor(_) => Some(Shows::Mirrored),
                 Bsdf::Dielectric(glass) => {
                     let [interior, exterior] = glass.indices(IMAGE_NM);

@@ -132,8 +132,8 @@ impl LightSource for SlideLight {
         })
     }
 
-    /// About, which only decides how often it is aimed at: as if the lamp had the same intensity through all of the slide, but not more
-    /// than it has without.
+    /// About, which only decides how often it is aimed at: as if the lamp had the same intensity through all of the slide, times the mean of the
+    /// image.
     fn power_factor(&self, scene_radius: f64) -> f64 {
         let of_lamp = self.lamp.power_factor(scene_radius);
         let [x, y] = self.slide.tangents;

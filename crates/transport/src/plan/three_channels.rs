@@ -23,6 +23,9 @@ pub(super) fn check(scene: &Scene) -> Result<(), StudyError> {
     if evidence::of(EffectName::Textures, scene).is_ok() {
         return refused("images become spectra, which three channels do not have");
     }
+    if scene.lights.iter().any(|light| light.kind.slide().is_some() && light.kind.has_colours()) {
+        return refused("colours of slides become spectra, which three channels do not have");
+    }
     if evidence::of(EffectName::Scattering, scene).is_ok() {
         return refused("media scatter, which three channels do not follow");
     }
