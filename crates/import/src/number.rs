@@ -79,6 +79,17 @@ fn within(alpha: f64) -> f64 {
     if alpha < LEAST_ALPHA { 0.0 } else { alpha.min(1.0) }
 }
 
+/// Whether a material of the format, or a part of it, is a measured one with a grain.
+pub(crate) fn has_measured_grain(value: &Value) -> bool {
+    match value {
+        Value::Object(map) => {
+            let measured = map.get("type").is_some_and(|kind| kind == "measured");
+            measured && map.contains_key("tangent_rotation_deg") || map.values().any(has_measured_grain)
+        }
+        _ => false,
+    }
+}
+
 /// Takes the directions away from facets of two widths, in a material of the format: the geometric mean of both is their width. Returns
 /// whether there were any.
 pub(crate) fn without_directions(value: &mut Value) -> bool {

@@ -81,9 +81,12 @@ impl Builder<'_> {
         self.images.values().flatten().find(|known| known.file == file).map(|known| known.size)
     }
 
-    /// The mean of the texels of an image that was read.
-    pub(crate) fn image_mean(&self, file: &str) -> Option<[f64; 3]> {
-        self.images.values().flatten().find(|known| known.file == file).map(|known| known.mean)
+    /// The mean of the texels of an image that was read in an encoding.
+    pub(crate) fn image_mean(&self, file: &str, encoding: Encoding) -> Option<[f64; 3]> {
+        let read = |((_, of), known): (&(String, Encoding), &Result<KnownImage, String>)| {
+            known.as_ref().ok().filter(|known| *of == encoding && known.file == file).map(|known| known.mean)
+        };
+        self.images.iter().find_map(read)
     }
 
     fn read_image(&mut self, name: &str, encoding: Encoding, place: &str) -> Result<KnownImage, String> {

@@ -40,6 +40,7 @@ pub(super) fn import(bytes: &[u8], parameters: &[(String, String)], builder: &mu
         looks: HashMap::new(),
         named_looks: HashMap::new(),
         meshes: HashMap::new(),
+        measured: HashMap::new(),
         open: Vec::new(),
         entered: 0,
     };
@@ -56,6 +57,8 @@ struct Walk<'a, 'w, 'b> {
     named_looks: HashMap<*const Element, Look>,
     /// Mesh files that have been read, by what was asked of them.
     meshes: HashMap<String, std::rc::Rc<shape::Mesh>>,
+    /// Measured materials, by the names of their files.
+    measured: HashMap<String, serde_json::Value>,
     /// The elements that are being read, each within the one before.
     open: Vec<*const Element>,
     /// How many elements have been entered, each as often as it is.

@@ -1,5 +1,6 @@
 //! Mitsuba's `principled` material, by the materials of the format that come nearest.
 
+use etalon_scene::Encoding;
 use serde_json::{Value, json};
 
 use super::Walk;
@@ -109,7 +110,8 @@ impl Walk<'_, '_, '_> {
     fn root_of_base(&mut self, base: &Value, place: &str) -> Value {
         root(base).unwrap_or_else(|| {
             self.builder.approximate(place, "an image as base colour of glass becomes its mean");
-            let mean = base["file"].as_str().and_then(|file| self.builder.image_mean(file));
+            let encoding = if base["encoding"] == "linear" { Encoding::Linear } else { Encoding::Auto };
+            let mean = base["file"].as_str().and_then(|file| self.builder.image_mean(file, encoding));
             reflectance(mean.unwrap_or([0.5; 3]).map(f64::sqrt))
         })
     }

@@ -13,7 +13,7 @@ use super::material::{Look, grey};
 use super::serialized;
 use crate::Placed;
 use crate::medium::fill;
-use crate::number::{WITHOUT_DIRECTIONS, has_image, without_directions};
+use crate::number::{WITHOUT_DIRECTIONS, has_image, has_measured_grain, without_directions};
 use crate::relief::without_map;
 use crate::vertex_colours::{self, attribute_of};
 
@@ -317,6 +317,14 @@ impl<'a> Walk<'a, '_, '_> {
 
     /// Takes images away from what has no texture coordinates.
     fn without_images(&mut self, dressed: &mut Dressed, has_uvs: bool, place: &str) {
+        let own = dressed.look.material.as_str().and_then(|name| self.builder.materials.get(name));
+        if !has_uvs && has_measured_grain(own.unwrap_or(&dressed.look.material)) {
+            self.builder.approximate(
+                place,
+                "it has no texture coordinates for the grain of its measured material: it becomes grey",
+            );
+            dressed.look.material = grey();
+        }
         let own = dressed.look.material.as_str().and_then(|name| self.builder.materials.get(name));
         if !has_uvs && has_image(own.unwrap_or(&dressed.look.material)) {
             self.builder

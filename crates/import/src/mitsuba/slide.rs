@@ -29,6 +29,7 @@ impl Walk<'_, '_, '_> {
         let place = &element.place;
         let to_world = self.placement(element)?;
         let axes = to_world.matrix3;
+        check_thickness(&to_world, place)?;
         let depth = axes.z_axis.length();
         let factor = PI * element.number("scale")?.unwrap_or(1.0) * depth;
         let stated = self.colour(element, "irradiance", Of::Shining)?;
@@ -50,9 +51,6 @@ impl Walk<'_, '_, '_> {
             element.property(harmless);
         }
         let slide = self.slide(shown, &over, &to_world, tangent, "screen");
-        if depth == 0.0 {
-            return Err(format!("{place}: its transform flattens it"));
-        }
         Ok(
             json!({ "type": "point", "position_m": to_world.translation.to_array(), "intensity": intensity, "slide": slide }),
         )
@@ -66,7 +64,8 @@ impl Walk<'_, '_, '_> {
         to_world: &DAffine3,
         cutoff: f64,
         place: &str,
-    ) {
+    ) -> Result<(), String> {
+        check_thickness(to_world, place)?;
         let image = match (is_image(&texture), channels(&texture)) {
             (true, _) => texture,
             (false, Some(rgb)) => flat(rgb),
@@ -77,13 +76,14 @@ impl Walk<'_, '_, '_> {
         };
         if cutoff >= 90.0 {
             self.builder.leave_out(place, "the texture of a spot that shines backward is left out");
-            return;
+            return Ok(());
         }
         // Its texture is turned by half of a circle.
         let mirrored = to_world.matrix3.determinant() < 0.0;
         let over = UvMap::scaled([if mirrored { 1.0 } else { -1.0 }, 1.0], [if mirrored { 0.0 } else { 1.0 }, 0.0]);
         let shown = Shown { image, aspect: 1.0 };
         lamp["slide"] = self.slide(shown, &over, to_world, cutoff.to_radians().tan(), "sphere");
+        Ok(())
     }
 
     /// Width over height of an image, 1 of everything else.
@@ -109,6 +109,13 @@ impl Walk<'_, '_, '_> {
             "aspect": aspect * x / y, "even_on": even_on,
         })
     }
+}
+
+/// That a slide has a width, a height and a depth.
+fn check_thickness(to_world: &DAffine3, place: &str) -> Result<(), String> {
+    let axes = to_world.matrix3;
+    let flat = [axes.x_axis, axes.y_axis, axes.z_axis].iter().any(|axis| axis.length() == 0.0);
+    if flat { Err(format!("{place}: its transform flattens it")) } else { Ok(()) }
 }
 
 fn is_image(value: &Value) -> bool {

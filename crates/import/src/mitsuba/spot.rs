@@ -19,7 +19,7 @@ impl Walk<'_, '_, '_> {
         let cutoff = element.number("cutoff_angle")?.unwrap_or(20.0);
         let mut lamp = self.bare_spot(element, &to_world, &intensity, cutoff)?;
         if let Some(image) = self.colour(element, "texture", Of::Texture)? {
-            self.put_slide_of_spot(&mut lamp, image, &to_world, cutoff, &element.place);
+            self.put_slide_of_spot(&mut lamp, image, &to_world, cutoff, &element.place)?;
         }
         Ok(lamp)
     }

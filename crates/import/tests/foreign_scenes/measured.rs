@@ -49,3 +49,17 @@ fn a_grain_lies_as_it_does_in_mitsuba() {
     assert_eq!(linear("paint.bsdf"), unturned);
     assert_ne!(linear("grain.bsdf"), unturned);
 }
+
+#[test]
+fn a_grain_without_texture_coordinates_becomes_grey() {
+    let text = |file: &str| {
+        let bsdf = MEASURED.replace("paint.bsdf", file);
+        format!(
+            "<scene version=\"3.0.0\"><shape type=\"ply\"><string name=\"filename\" value=\"bare.ply\"/>{bsdf}</shape></scene>"
+        )
+    };
+    let grain = imported("xml", &text("grain.bsdf"));
+    assert!(said(&grain).iter().any(|line| line.contains("the grain of its measured material")), "{:?}", said(&grain));
+    assert!(scene(&grain).materials.iter().all(|material| !matches!(material.kind, MaterialKind::Measured { .. })));
+    assert!(said(&imported("xml", &text("paint.bsdf"))).is_empty());
+}

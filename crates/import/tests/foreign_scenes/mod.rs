@@ -28,6 +28,10 @@ use proptest::prelude::*;
 
 const PNG: &[u8] = include_bytes!("../../../scene/tests/files/chequers.png");
 const BSDF: &[u8] = include_bytes!("../../../scene/tests/files/paint.bsdf");
+/// A triangle without texture coordinates.
+const BARE: &[u8] =
+    b"ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n\
+property list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
 const GRAIN: &[u8] = include_bytes!("../../../scene/tests/files/grain.bsdf");
 const OBJ: &[u8] = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n";
 const INCLUDED: &[u8] = br#"<scene version="3.0.0">
@@ -47,6 +51,7 @@ fn near(name: &str) -> Result<Vec<u8>, String> {
         "paint.bsdf" => Ok(BSDF.to_vec()),
         "cut.bsdf" => Ok(BSDF[..99].to_vec()),
         "grain.bsdf" => Ok(GRAIN.to_vec()),
+        "bare.ply" => Ok(BARE.to_vec()),
         "a.obj" => Ok(OBJ.to_vec()),
         "normals.obj" => Ok(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//1 3//1\n".to_vec()),
         "smoke.vol" => Ok(vol(1, &[0.5, 1.5])),

@@ -95,3 +95,18 @@ fn the_texture_of_a_spot_is_turned_by_half_of_a_circle() {
     );
     assert!(said(&imported).iter().any(|line| line.contains("shines backward")), "{:?}", said(&imported));
 }
+
+#[test]
+fn a_slide_without_a_width_is_refused() {
+    for (x, y, z) in [(0, 1, 1), (1, 0, 1), (1, 1, 0)] {
+        let flat = format!("<transform name=\"to_world\"><scale x=\"{x}\" y=\"{y}\" z=\"{z}\"/></transform>");
+        let board = BOARD.replace("NAME", "texture");
+        for keys in [
+            format!("<emitter type=\"projector\"><float name=\"fov\" value=\"40\"/>{flat}</emitter>"),
+            format!("<emitter type=\"spot\">{board}{flat}</emitter>"),
+        ] {
+            let text = format!("<scene version=\"3.0.0\"><shape type=\"sphere\"/>{keys}</scene>");
+            assert!(super::refusal("xml", &text).contains("flattens it"), "{keys}");
+        }
+    }
+}
