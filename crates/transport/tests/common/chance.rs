@@ -209,7 +209,7 @@ impl Chance {
         if self.below(4) == 0 {
             scene["medium"] = self.medium();
         }
-        if self.below(5) == 0 {
+        if self.below(12) == 0 {
             let light = json!({"type": "point", "position_m": self.point(2.0), "intensity": 5, "slide": self.slide()});
             scene["lights"].as_array_mut().expect("a list").push(light);
         }
