@@ -2,8 +2,8 @@
 
 use serde_json::{Value, json};
 
-use super::Truth;
-use super::scene::{Scene, black, block, brushed_metal, disk, level_square, parallelogram, shown, sphere};
+use super::scene::{Scene, black, block, brushed_metal, disk, grey_hdr, level_square, parallelogram, shown, sphere};
+use super::{Claim, Truth};
 use crate::laws::{FresnelPowers, fresnel_exact};
 use crate::quadrature::interval;
 use crate::vector::{Vec3, dot};
@@ -100,11 +100,16 @@ fn metal() -> Truth {
     material["alpha"] = json!(0.4);
     material["reflected_tint"] = json!(0.6);
     let ball = json!({ "shape": sphere([0.0; 3], 1.0), "material": material });
-    let scene = Scene::orthographic([0.0, 0.0, 3.0], [0.0; 3], 1.2).thing(ball).sky(1.0);
+    let scene = Scene::orthographic([0.0, 0.0, 3.0], [0.0; 3], 1.2).thing(ball);
+    // Shadow rays aim at images, not at a constant sky.
+    let scene = scene
+        .light(json!({ "type": "environment", "image": { "file": "even.hdr" } }))
+        .file("even.hdr", grey_hdr(8, &[1.0; 32]));
     Truth::new("tinted-metal-in-uniform-light", &scene.film(16, 16).spp(256), 0.6, "rL = 0.6")
         .because("A metal that reflects all light, that which meets several facets included, shows its surround times its tint.")
         .or_else("no tint", 1.0)
         .or_else("the tint twice", 0.36)
+        .claims(Claim::PhotometricSensor)
         .sees(3e-3)
 }
 
