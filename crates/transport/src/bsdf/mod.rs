@@ -24,6 +24,7 @@ mod oren_nayar;
 mod plastic;
 mod polarising_sheet;
 mod properties;
+mod rough_boundary;
 mod rough_conductor;
 mod rough_dielectric;
 mod shading;

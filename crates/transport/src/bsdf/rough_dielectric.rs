@@ -14,20 +14,16 @@
 //! Facets bend each wavelength by its own angle, but a rough interface sends every wavelength everywhere: all lanes go on
 //! along the hero's direction, each with its own value and its own density of that direction.
 
-use super::albedo::{self, LossTable, Tabulated};
 use super::film::{PathFilm, PowerShares};
-use super::glass_losses::{glass_table, mean_transmittance, polarised_loss};
 use super::microfacet::Distribution;
-use super::mueller::PolarisedLoss;
+use super::rough_boundary::Boundary;
 use super::{BsdfSample, Properties, Shading};
 use crate::media::Interface;
 use crate::mis::Density;
 use crate::polarisation::mueller::{self, Matrix};
-use crate::spectral::PathSpectrum;
 use etalon_optics::{Complex, Lanes, RefractiveIndex, Vec3, fresnel, snell};
 use etalon_scene::Microfacets;
 use std::f64::consts::FRAC_1_PI;
-use std::sync::Arc;
 
 /// Rough interface of two transparent media.
 #[derive(Clone, Debug)]
@@ -40,28 +36,6 @@ pub struct RoughDielectric {
     own: Boundary,
     /// What it is between the same interior and other media, if it bounds a solid among others.
     others: Vec<Boundary>,
-}
-
-/// The interface between two media.
-#[derive(Clone, Debug)]
-struct Boundary {
-    interior: RefractiveIndex,
-    exterior: RefractiveIndex,
-    dispersive: bool,
-    compensation: Option<Box<Compensation>>,
-}
-
-/// Losses from outside and from inside, over η = n_interior/n_exterior.
-#[derive(Clone, Debug)]
-struct Compensation {
-    outside: Arc<LossTable>,
-    inside: Arc<LossTable>,
-    /// Mean of Fresnel's T over diffuse light from outside, at each wavelength.
-    transmittance: PathSpectrum,
-    /// The least and the largest η.
-    eta: [f64; 2],
-    /// What losses do to polarised light, from outside and from inside, where that is carried.
-    polarised: Option<Box<[PolarisedLoss; 2]>>,
 }
 
 /// Where and how a facet is met: the wavelength, nm, texture coordinates, and whether from the exterior.
@@ -81,86 +55,6 @@ struct Between {
     density: f64,
     /// n of the side of `wi`, refracted, over that of `wo`: as Fresnel's equations take it.
     eta: f64,
-}
-
-/// The interface at one wavelength, seen from the side of `wo`: index 0 is that side, 1 the other.
-#[derive(Clone, Copy)]
-struct Sides<'a> {
-    n: [f64; 2],
-    /// n_interior/n_exterior and the losses.
-    tables: Option<(f64, [&'a LossTable; 2])>,
-    /// Loss in the direction `wo`.
-    loss_o: f64,
-    /// Mean loss on either side.
-    mean_loss: [f64; 2],
-    /// Share of the loss that crosses.
-    crossing: f64,
-}
-
-impl Sides<'_> {
-    /// Loss in a direction on `side`.
-    fn loss_i(&self, side: usize, wi: Vec3<f64>) -> f64 {
-        self.tables.map_or(0.0, |(eta, tables)| tables[side].eval(wi, eta))
-    }
-
-    /// Density with which a direction on `side` is drawn for light that meets several facets.
-    fn diffuse(&self, side: usize, mu: f64) -> f64 {
-        self.tables.map_or(0.0, |(_, tables)| tables[side].density(mu))
-    }
-}
-
-impl Boundary {
-    fn new(
-        interior: RefractiveIndex,
-        exterior: RefractiveIndex,
-        distribution: Distribution,
-        compensated: bool,
-        range_nm: [f64; 2],
-    ) -> Self {
-        let dispersive = interior.is_dispersive() || exterior.is_dispersive();
-        let compensation = compensated.then(|| {
-            let ratio = |nm: f64| interior.eval(nm) / exterior.eval(nm);
-            let eta = albedo::extremes(range_nm, ratio);
-            let table = |of, eta_of: fn(f64) -> f64| {
-                albedo::shared(of, &distribution, eta, || glass_table(&distribution, eta, eta_of))
-            };
-            Box::new(Compensation {
-                outside: table(Tabulated::Outside, |eta| eta),
-                inside: table(Tabulated::Inside, f64::recip),
-                transmittance: PathSpectrum::tabulate(range_nm, |nm| mean_transmittance(ratio(nm))),
-                eta,
-                polarised: None,
-            })
-        });
-        Self { interior, exterior, dispersive, compensation }
-    }
-
-    fn sides(&self, wavelength_nm: f64, from_outside: bool, wo: Vec3<f64>) -> Sides<'_> {
-        let (inside, outside) = (self.interior.eval(wavelength_nm), self.exterior.eval(wavelength_nm));
-        let n = if from_outside { [outside, inside] } else { [inside, outside] };
-        let Some(tables) = &self.compensation else {
-            return Sides { n, tables: None, loss_o: 0.0, mean_loss: [0.0; 2], crossing: 0.0 };
-        };
-        let eta = inside / outside;
-        let (outside, inside): (&LossTable, &LossTable) = (&tables.outside, &tables.inside);
-        let (near, far) = if from_outside { (outside, inside) } else { (inside, outside) };
-        let mean_loss = [near.average(eta), far.average(eta)];
-        let larger = mean_loss[0].max(mean_loss[1]);
-        let from_above = tables.transmittance.eval(wavelength_nm);
-        let transmittance = if from_outside { from_above } else { from_above / (eta * eta) };
-        let crossing = if larger > 0.0 { transmittance * mean_loss[1] / larger } else { 0.0 };
-        Sides { n, tables: Some((eta, [near, far])), loss_o: near.eval(wo, eta), mean_loss, crossing }
-    }
-
-    fn prepare_polarisation(&mut self, distribution: &Distribution) {
-        if let Some(compensation) = &mut self.compensation {
-            let eta = compensation.eta;
-            compensation.polarised = Some(Box::new([
-                PolarisedLoss::new(eta, distribution, |facet, eta| polarised_loss(distribution, facet, eta)),
-                PolarisedLoss::new(eta, distribution, |facet, eta| polarised_loss(distribution, facet, 1.0 / eta)),
-            ]));
-        }
-    }
 }
 
 impl RoughDielectric {
