@@ -138,9 +138,65 @@ impl LightSource for SlideLight {
         let of_lamp = self.lamp.power_factor(scene_radius);
         let [x, y] = self.slide.tangents;
         let share = match &self.lamp {
-            Light::Point(_) => (4.0 * x * y / (4.0 * std::f64::consts::PI)).min(1.0),
+            // Of a sphere, 4xy is about the solid angle of the slide.
+            Light::Point(_) => (x * y / std::f64::consts::PI).min(1.0),
             _ => 1.0,
         };
         of_lamp * share * rec709_luminance(self.slide.image.mean())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use etalon_scene::{Image, Texels, TextureFilter};
+    use proptest::prelude::*;
+
+    /// A slide whose left half is white and whose right half is black, for who looks along its direction.
+    fn slide(tangents: [f64; 2], even_on: EvenOn) -> Slide {
+        let mut image = ImageTexture::new(Image::new(2, 1, Texels::F32(vec![[1.0; 3], [0.0; 3]])));
+        image.filter = TextureFilter::Nearest;
+        let (direction, up) = (Vec3::new(0.6, 0.0, -0.8), Vec3::new(0.0, 1.0, 0.0));
+        let position = Vec3::new(0.1, 0.2, -0.1);
+        Slide { position, direction, right: direction.cross(up), up, tangents, image, even_on }
+    }
+
+    proptest! {
+        /// Up to an edge, where rounding decides, a way is lit where the slide is met from the lamp.
+        #[test]
+        fn a_part_holds_what_the_slide_lights(
+            from in prop::array::uniform3(-3.0..3.0_f64),
+            toward in prop::array::uniform3(-1.0..1.0_f64),
+            tangents in prop::array::uniform2(0.05..3.0_f64),
+        ) {
+            let toward = Vec3::from_array(toward);
+            prop_assume!(toward.length() > 0.1);
+            let slide = slide(tangents, EvenOn::Sphere);
+            let way = Way { origin: Vec3::from_array(from), direction: toward.normalized(), length: 5.0 };
+            let [first, last] = slide.part(&way).unwrap_or([f64::NAN; 2]);
+            for i in 0..500 {
+                let t = 5.0 * (f64::from(i) + 0.5) / 500.0;
+                let away = way.origin + way.direction * t - slide.position;
+                let [x, y, depth] = [slide.right, slide.up, slide.direction].map(|axis| away.dot(axis));
+                let within = depth > 0.0 && x.abs() <= tangents[0] * depth && y.abs() <= tangents[1] * depth;
+                if (t - first).abs() > 1e-6 && (t - last).abs() > 1e-6 {
+                    prop_assert_eq!(t > first && t < last, within, "{} {} {}", t, first, last);
+                    // Of the two halves, the right one is black.
+                    let passes = slide.passes(away / away.length()).is_some();
+                    prop_assert_eq!(passes, within && x < 0.0, "{} {}", t, x);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_screen_is_lit_evenly_and_a_sphere_too() {
+        for (even_on, power) in [(EvenOn::Screen, 3), (EvenOn::Sphere, 0)] {
+            let slide = slide([1.0; 2], even_on);
+            let away = (slide.direction - slide.right * 0.9 + slide.up * 0.3).normalized();
+            let factor = slide.passes(away).expect("it is white there").factor;
+            let cos = away.dot(slide.direction);
+            assert!((factor * cos.powi(power) - 1.0).abs() < 1e-12, "{even_on:?}: {factor}");
+        }
     }
 }
