@@ -334,6 +334,17 @@ impl Walk<'_, '_, '_> {
     }
 }
 
+/// A light or a coefficient of the format, times a factor.
+pub(super) fn times(mut spectrum: Value, factor: f64) -> Value {
+    if let Some(number) = spectrum.as_f64() {
+        return json!(number * factor);
+    }
+    if factor != 1.0 {
+        spectrum["scale"] = json!(spectrum["scale"].as_f64().unwrap_or(1.0) * factor);
+    }
+    spectrum
+}
+
 /// The map from texture coordinates to those of a texture. Of a transform in space, what it does to x and y counts.
 fn to_uv(texture: &Element) -> Result<UvMap, String> {
     let Some(transform) = texture.property("to_uv") else { return Ok(UvMap::IDENTITY) };

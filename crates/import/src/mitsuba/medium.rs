@@ -4,7 +4,7 @@ use glam::DAffine3;
 use serde_json::{Value, json};
 
 use super::Walk;
-use super::colour::Of;
+use super::colour::{Of, times};
 use super::element::Element;
 use crate::matrix::steps;
 use crate::medium::{blended, in_unit_box, means, vol, without_colour};
@@ -46,18 +46,18 @@ impl<'a> Walk<'a, '_, '_> {
         made["extinction_per_m"] = match element.plugin() {
             "homogeneous" => match element.property("sigma_t") {
                 None => json!(scale),
-                Some(stated) => scaled(self.uniform(stated, Of::Coefficient)?, scale),
+                Some(stated) => times(self.uniform(stated, Of::Coefficient)?, scale),
             },
             "heterogeneous" => {
                 let stated = element.property("sigma_t").ok_or_else(|| format!("{place}: it has no \"sigma_t\""))?;
                 match self.grid(stated)? {
                     Some(Grid { density, extinction }) => {
                         made["density"] = density;
-                        scaled(extinction, scale)
+                        times(extinction, scale)
                     }
                     None => {
                         made["density"] = self.box_of_ones(stated)?;
-                        scaled(self.uniform(stated, Of::Coefficient)?, scale)
+                        times(self.uniform(stated, Of::Coefficient)?, scale)
                     }
                 }
             }
@@ -217,16 +217,4 @@ impl<'a> Walk<'a, '_, '_> {
 /// Numbers as the attribute of an element writes them.
 fn words(numbers: &[f64]) -> String {
     numbers.iter().map(f64::to_string).collect::<Vec<_>>().join(" ")
-}
-
-/// A spectrum times a factor.
-fn scaled(spectrum: Value, factor: f64) -> Value {
-    if let Some(number) = spectrum.as_f64() {
-        return json!(number * factor);
-    }
-    let mut scaled = spectrum;
-    if factor != 1.0 {
-        scaled["scale"] = json!(scaled["scale"].as_f64().unwrap_or(1.0) * factor);
-    }
-    scaled
 }

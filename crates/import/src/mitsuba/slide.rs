@@ -11,10 +11,9 @@ use serde_json::{Value, json};
 
 use super::Walk;
 use super::camera::field_of_view;
-use super::colour::Of;
+use super::colour::{Of, times};
 use super::element::Element;
 use crate::checker::{Checker, channels};
-use crate::translucent::scaled;
 use crate::uv;
 
 /// What a slide shows: an image, which lies over coordinates with v from above, and its width over its height.
@@ -38,7 +37,7 @@ impl Walk<'_, '_, '_> {
         let (image, intensity) = match stated {
             None => (even(1.0), white),
             Some(value) if is_image(&value) => (value, white),
-            Some(value) => (even(1.0), brighter(value, factor)),
+            Some(value) => (even(1.0), times(value, factor)),
         };
         let shown = Shown { image, aspect: aspect_of_texels };
         // That of the image in units of its own.
@@ -120,18 +119,6 @@ fn check_thickness(to_world: &DAffine3, place: &str) -> Result<(), String> {
 
 fn is_image(value: &Value) -> bool {
     matches!(value["type"].as_str(), Some("image" | "checker" | "gradient"))
-}
-
-/// A light of the format, times a factor.
-fn brighter(mut value: Value, factor: f64) -> Value {
-    match value["type"].as_str() {
-        // The scale of a colour scales its luminance.
-        Some("rgb" | "illuminant" | "blackbody") => {
-            value["scale"] = json!(factor * value["scale"].as_f64().unwrap_or(1.0));
-            value
-        }
-        _ => scaled(value, factor),
-    }
 }
 
 /// A slide of one colour.
