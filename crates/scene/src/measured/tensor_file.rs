@@ -1,9 +1,16 @@
 //! Tensor files: named arrays of numbers in one file, as the RGL material database and Mitsuba write them.
 //!
 //! All integers are little-endian. The file begins with the twelve bytes `tensor_file` and 0, the version (two bytes, 1 and 0) and the number
-//! of fields (32 bits). A description of each field follows: the length of its name (16 bits), the name, the number of its dimensions (16
-//! bits), the type of its numbers (8 bits), the place of the numbers in the file (64 bits), the extents along its dimensions (64 bits each).
-//! The last dimension runs first.
+//! of fields (32 bits). A description of each field follows:
+//!
+//! | bits | what |
+//! |---:|---|
+//! | 16 | length of its name, in bytes |
+//! | 8 each | the name |
+//! | 16 | number of its dimensions |
+//! | 8 | type of its numbers |
+//! | 64 | place of the numbers in the file |
+//! | 64 each | extents along its dimensions; the last dimension runs first |
 
 /// How a file begins: the name of the format, and the version.
 const BEGINNING: &[u8; 14] = b"tensor_file\0\x01\0";
