@@ -36,7 +36,7 @@ pub use integrator::{Integrator, LightSampling, LightSelection, MOST_REPLICATES,
 pub use light::{Beam, BeamProfile, Light, LightCone, LightKind};
 pub use material::{
     FacetDistribution, FacetMasking, InternalReflection, LEAST_ALPHA, Material, MaterialKind, Metal, Microfacets,
-    PolarisingSheet, Side,
+    PolarisingSheet, PrincipledLobes, Side,
 };
 pub use medium::{DensityGrid, ExponentialDensity, Medium, MediumDensity, PhaseFunction, PhaseMatrix, PhaseTable};
 pub use meter::{Meter, MeterKind, MeterQuantity, Receiver};

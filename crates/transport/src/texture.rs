@@ -84,15 +84,31 @@ impl PathTexture {
                 let rgb = texture.eval(at.uv);
                 Lanes::from_fn(|lane| basis.reflectance(rgb, lambda_nm[lane]))
             }
-            Self::VertexColours { factor, grey, image, basis } => {
-                let mut rgb = [0, 1, 2].map(|c| at.colour[c] * factor[c]);
-                if let Some(image) = image {
-                    let shown = image.eval(at.uv);
-                    rgb = [0, 1, 2].map(|c| rgb[c] * shown[c]);
-                }
-                let rgb = if *grey { [rec709_luminance(rgb); 3] } else { rgb };
+            Self::VertexColours { basis, .. } => {
+                let rgb = self.vertex_colour(at);
                 Lanes::from_fn(|lane| basis.reflectance(rgb, lambda_nm[lane]))
             }
+        }
+    }
+
+    /// What colours of vertices show at a place; white of any other.
+    #[inline]
+    fn vertex_colour(&self, at: TexturePoint) -> [f64; 3] {
+        let Self::VertexColours { factor, grey, image, .. } = self else { return [1.0; 3] };
+        let mut rgb = [0, 1, 2].map(|c| at.colour[c] * factor[c]);
+        if let Some(image) = image {
+            let shown = image.eval(at.uv);
+            rgb = [0, 1, 2].map(|c| rgb[c] * shown[c]);
+        }
+        if *grey { [rec709_luminance(rgb); 3] } else { rgb }
+    }
+
+    /// The luminance at a place under D65, 1 of a perfect reflector.
+    pub(crate) fn luminance(&self, at: TexturePoint) -> f64 {
+        match self {
+            Self::Uniform(spectrum) => Illuminant::D65.xyz_of_reflectance(|nm| spectrum.eval(nm))[1],
+            Self::Image { texture, .. } => rec709_luminance(texture.eval(at.uv)),
+            Self::VertexColours { .. } => rec709_luminance(self.vertex_colour(at)),
         }
     }
 

@@ -6,6 +6,7 @@ mod fluorescent;
 mod grating;
 mod index;
 mod measured;
+mod principled;
 mod roughness;
 mod sheet;
 mod thin_film;
@@ -36,6 +37,7 @@ use grating::{GratingMaterial, grating};
 pub(super) use index::{IndexForm, index, least};
 use index::{NamedMetal, complex_index, complex_keys};
 use measured::{MeasuredMaterial, measured};
+use principled::{PrincipledMaterial, principled};
 use roughness::{RoughnessKeys, roughness, roughness_keys};
 use sheet::{PolariserMaterial, RetarderMaterial, polariser, retarder};
 use thin_film::{FilmLayerForm, thin_film};
@@ -303,6 +305,7 @@ crate::variants! {
         "grating" => Grating(GratingMaterial),
         "fluorescent" => Fluorescent(FluorescentMaterial),
         "measured" => Measured(MeasuredMaterial),
+        "principled" => Principled(PrincipledMaterial),
         "blend" => Blend(BlendMaterial),
         "boundary" => Boundary(BoundaryMaterial),
         "black" => Black(BlackMaterial),
@@ -326,6 +329,7 @@ impl MaterialForm {
             Self::Grating(m) => m.at,
             Self::Fluorescent(m) => m.at,
             Self::Measured(m) => m.at,
+            Self::Principled(m) => m.at,
             Self::Blend(m) => m.at,
             Self::Boundary(m) => m.at,
             Self::Black(m) => m.at,
@@ -437,6 +441,7 @@ pub(crate) fn material<'f>(
         MaterialForm::Grating(form) => grating(form, spectra, files, reader),
         MaterialForm::Fluorescent(form) => fluorescent(form, spectra, reader),
         MaterialForm::Measured(form) => measured(form, files, reader),
+        MaterialForm::Principled(form) => principled(form, spectra, files, reader),
         MaterialForm::Blend(form) => blend(form, before, spectra, files, reader),
         MaterialForm::Boundary(boundary) => {
             let medium = medium(boundary.medium.as_ref()?, spectra, files, reader)?;

@@ -82,6 +82,32 @@ pub enum InternalReflection {
     Uncoloured,
 }
 
+/// How much a principled surface has of each lobe.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PrincipledLobes {
+    /// Share of metal, from 0 to 1.
+    pub metallic: f64,
+    /// Share of what a dielectric reflects that has the colour of the base, from 0 to 1.
+    pub specular_tint: f64,
+    /// Share of the diffuse light that comes as from below the surface, from 0 to 1.
+    pub flatness: f64,
+    /// Sheen at grazing angles, at least 0.
+    pub sheen: f64,
+    /// Share of the sheen that has the colour of the base, from 0 to 1.
+    pub sheen_tint: f64,
+    /// Strength of the clear coat, at least 0; 1 reflects 0.04 of the light head-on.
+    pub clear_coat: f64,
+    /// Width of the coat's facets, at least [`LEAST_ALPHA`] and below 1.
+    pub clear_coat_alpha: f64,
+}
+
+impl PrincipledLobes {
+    /// Whether a lobe has the colour of the base but not its luminance.
+    pub fn has_tints(&self) -> bool {
+        self.specular_tint > 0.0 || self.sheen_tint > 0.0
+    }
+}
+
 /// What a surface does to light.
 #[derive(Clone, Debug, PartialEq)]
 pub enum MaterialKind {
@@ -198,6 +224,17 @@ pub enum MaterialKind {
         /// What was measured, and how it lies.
         surface: MeasuredSurface,
     },
+    /// Lobes that are added, on both sides, seen from vacuum: Burley's principled surface.
+    Principled {
+        /// The base's albedo, in [0, 1] at every wavelength, which of a metal is what it reflects head-on.
+        reflectance: SpectrumTexture,
+        /// The surface's index, at least 1.
+        index: RefractiveIndex,
+        /// Its facets.
+        facets: Microfacets,
+        /// How much there is of each lobe.
+        lobes: PrincipledLobes,
+    },
     /// Materials side by side, finer than can be seen: everywhere the two between whose places a number lies, in linear
     /// proportion; the first below its place, the last above.
     Blend {
@@ -293,6 +330,9 @@ macro_rules! parameters {
                     vec![$of::Reflectance(reflectance), $of::Reflectance(transmittance)]
                 }
                 Self::Plastic { reflectance, coat, .. } => vec![$of::Reflectance(reflectance), $of::Coat(coat)],
+                Self::Principled { reflectance, index, .. } => {
+                    vec![$of::Reflectance(reflectance), $of::Principled(index)]
+                }
                 Self::Conductor { metal, film } | Self::RoughConductor { metal, film, .. } => {
                     iter::once($of::Metal(metal)).chain(film.into_iter().map($of::Film)).collect()
                 }

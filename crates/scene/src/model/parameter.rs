@@ -27,6 +27,8 @@ pub enum Parameter<'a> {
     Fluorescence(&'a Fluorescence),
     /// What was measured at some wavelengths.
     Measured(&'a MeasuredSurface),
+    /// The index of a principled surface, which depolarises.
+    Principled(&'a RefractiveIndex),
 }
 
 /// [`Parameter`], to be changed.
@@ -50,6 +52,8 @@ pub enum ParameterMut<'a> {
     Fluorescence(&'a mut Fluorescence),
     /// See [`Parameter::Measured`].
     Measured(&'a mut MeasuredSurface),
+    /// See [`Parameter::Principled`].
+    Principled(&'a mut RefractiveIndex),
 }
 
 impl<'a> Parameter<'a> {

@@ -21,6 +21,7 @@ pub(crate) fn kind(kind: &M, nm: f64, holds_medium: bool) -> bool {
         | M::Mirror { reflectance }
         | M::OrenNayar { reflectance, .. }
         | M::Plastic { reflectance, .. }
+        | M::Principled { reflectance, .. }
         | M::Conductor { metal: Metal::Reflectance(reflectance), .. }
         | M::RoughConductor { metal: Metal::Reflectance(reflectance), .. } => match reflectance {
             SpectrumTexture::Uniform(spectrum) => (0.0..=1.0).contains(&spectrum.eval(nm)),

@@ -7,6 +7,7 @@
 
 mod albedo;
 mod blend;
+mod clear_coat;
 mod conductor;
 pub(crate) mod dielectric;
 mod film;
@@ -23,6 +24,7 @@ mod one_sided;
 mod oren_nayar;
 mod plastic;
 mod polarising_sheet;
+mod principled;
 mod properties;
 mod rough_boundary;
 mod rough_conductor;
@@ -50,6 +52,7 @@ pub use one_sided::OneSided;
 pub use oren_nayar::OrenNayar;
 pub use plastic::Plastic;
 pub use polarising_sheet::PolarisingSheet;
+pub use principled::Principled;
 pub use properties::Properties;
 pub use rough_conductor::RoughConductor;
 pub use rough_dielectric::RoughDielectric;
@@ -124,6 +127,8 @@ pub enum Bsdf {
     Fluorescent(Fluorescent),
     /// A measured surface.
     Measured(Measured),
+    /// A surface of several lobes that are added.
+    Principled(Principled),
     /// A mixture of others.
     Blend(Blend),
     /// Another on one side.
@@ -151,6 +156,7 @@ pub fn properties(kind: &MaterialKind) -> Properties {
         MaterialKind::Grating { grating, .. } => Grating::properties(grating),
         MaterialKind::Fluorescent { reflectance, .. } => Fluorescent::properties(reflectance),
         MaterialKind::Measured { surface } => Measured::properties(surface),
+        MaterialKind::Principled { facets, .. } => Principled::properties(facets),
         MaterialKind::OneSided { kind, .. } => OneSided::properties(properties(kind)),
         MaterialKind::Tinted { kind, .. } => Tinted::properties(properties(kind)),
         MaterialKind::Blend { parts, .. } => Blend::properties(parts.iter().map(|(_, part)| properties(part))),
@@ -212,6 +218,10 @@ impl Bsdf {
                 Self::Fluorescent(Fluorescent::new(reflectance, fluorescence, range_nm))
             }
             MaterialKind::Measured { surface } => Self::Measured(Measured::new(surface)),
+            MaterialKind::Principled { reflectance, index, facets, lobes } => {
+                let reflectance = PathTexture::new(reflectance, range_nm);
+                Self::Principled(Principled::new(reflectance, index.clone(), facets, *lobes, range_nm))
+            }
             MaterialKind::Blend { parts, by } => {
                 let parts = parts.iter().map(|(place, part)| (*place, Self::new(part, range_nm)));
                 Self::Blend(Blend::new(parts, by.clone()))
@@ -310,6 +320,7 @@ impl Bsdf {
             Self::Plastic(plastic) => plastic.eval(lambda_nm, n, at, wo, wi),
             Self::Fluorescent(surface) => surface.eval(lambda_nm, n, at, wo, wi),
             Self::Measured(measured) => measured.eval(lambda_nm, n, at, wo, wi),
+            Self::Principled(surface) => surface.eval(lambda_nm, n, at, wo, wi),
             Self::Blend(blend) => blend.eval(lambda_nm, n, at, wo, wi),
             Self::OneSided(one) => one.eval(lambda_nm, n, at, wo, wi),
             Self::Tinted(tinted) => tinted.eval(lambda_nm, n, at, wo, wi),
@@ -348,6 +359,7 @@ impl Bsdf {
             Self::PolarisingSheet(sheet) => sheet.sample(lambda_nm, wo),
             Self::Grating(grating) => grating.sample(lambda_nm, n, at, wo, u[0]),
             Self::Measured(measured) => measured.sample(lambda_nm, n, at, wo, [u[1], u[2]]),
+            Self::Principled(surface) => surface.sample(lambda_nm, n, at, wo, u),
             Self::Blend(blend) => blend.sample(lambda_nm, n, at, wo, u),
             Self::OneSided(one) => one.sample(lambda_nm, n, at, wo, u),
             Self::Tinted(tinted) => tinted.sample(lambda_nm, n, at, wo, u),

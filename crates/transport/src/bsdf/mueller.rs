@@ -10,7 +10,7 @@
 //! | thin film | that of the stack's complex amplitudes, in place of the bare interface's |
 //! | plastic | its coat's, and light that its ground depolarised, which the coat polarises on its way out |
 //! | polariser, retarder | by its axis, whatever the plane of incidence |
-//! | diffuse surface, translucent sheet, grating, measured surface | depolarises |
+//! | diffuse surface, translucent sheet, grating, measured or principled surface | depolarises |
 //! | blend | the sum of its parts, each by its share of the light |
 //!
 //! Around a shading normal ([`Shading`]) the matrix is that of the directions as the BSDF takes them, in the frame of the real
@@ -96,6 +96,7 @@ impl Bsdf {
             | Self::Grating(_)
             | Self::Fluorescent(_)
             | Self::Measured(_)
+            | Self::Principled(_)
             | Self::Black => None,
         }
     }
@@ -120,6 +121,7 @@ impl Bsdf {
             | Self::Grating(_)
             | Self::Fluorescent(_)
             | Self::Measured(_)
+            | Self::Principled(_)
             | Self::Black => {}
         }
     }

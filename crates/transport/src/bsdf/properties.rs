@@ -78,7 +78,7 @@ mod tests {
     use etalon_optics::{ComplexIndex, Lanes, RefractiveIndex, Spectrum, Vec3};
     use etalon_scene::{
         FilmIndex, FilmLayer, InternalReflection, MaterialKind, MeasuredArrays, MeasuredBrdf, MeasuredSurface, Metal,
-        PolarisingSheet as Sheet, Side, ThinFilm,
+        PolarisingSheet as Sheet, PrincipledLobes, Side, ThinFilm,
     };
 
     /// A measured BRDF whose tables have one value each.
@@ -154,6 +154,13 @@ mod tests {
         let blends = [both(0, 1), both(1, 3), both(5, 6), both(0, 0), both(7, 17)];
         kinds.extend(blends);
         kinds.extend([measured(0.5), measured(0.0)]);
+        let lobes = PrincipledLobes { clear_coat: 1.0, clear_coat_alpha: 0.1, ..PrincipledLobes::default() };
+        kinds.extend([0.0, 0.5].map(|r| MaterialKind::Principled {
+            reflectance: Spectrum::Constant(r).into(),
+            index: interior.clone(),
+            facets: grained,
+            lobes,
+        }));
         // Some nanometres of silver pass a part and reflect a part; also on a metal that would reflect nothing.
         let film = || {
             let index = FilmIndex::Absorbing(ComplexIndex::named("Ag").unwrap());

@@ -254,7 +254,7 @@ fn turn_grey(kind: &mut MaterialKind, range_nm: [f64; 2]) {
                 *reflectance = grey_texture(reflectance, range_nm);
             }
             ParameterMut::Metal(Metal::Index(index)) => *index = grey_metal(index, range_nm),
-            ParameterMut::Coat(index) => *index = index_at_reference(index, range_nm),
+            ParameterMut::Coat(index) | ParameterMut::Principled(index) => *index = index_at_reference(index, range_nm),
             ParameterMut::Sheet(PolarisingSheet::Polariser { transmittance, .. }) => {
                 *transmittance = grey(transmittance, range_nm);
             }

@@ -59,7 +59,7 @@ fn colour(kind: &mut MaterialKind, range_nm: [f64; 2]) {
                     *spectrum = shown(spectrum);
                 }
             }
-            ParameterMut::Coat(index) => *index = index_at_reference(index, range_nm),
+            ParameterMut::Coat(index) | ParameterMut::Principled(index) => *index = index_at_reference(index, range_nm),
             // A film is what it is at the wavelengths of the channels.
             ParameterMut::Metal(Metal::Index(_))
             | ParameterMut::Interface(_)

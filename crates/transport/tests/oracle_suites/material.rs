@@ -90,6 +90,7 @@ impl Scatters for Material {
             MaterialKind::Tinted { .. }
             | MaterialKind::RoughConductor { .. }
             | MaterialKind::Measured { .. }
+            | MaterialKind::Principled { .. }
             | MaterialKind::RoughDielectric { .. }
             | MaterialKind::Plastic { .. }
             | MaterialKind::Blend { .. } => vec![550.0],
@@ -114,6 +115,7 @@ fn deltas(kind: &MaterialKind, wo: [f64; 3], wavelength_nm: f64) -> Vec<DeltaLob
         | MaterialKind::OrenNayar { .. }
         | MaterialKind::Translucent { .. }
         | MaterialKind::Measured { .. }
+        | MaterialKind::Principled { .. }
         | MaterialKind::Boundary { .. }
         | MaterialKind::Black => Vec::new(),
         MaterialKind::PolarisingSheet { sheet, .. } => {

@@ -11,6 +11,7 @@ mod lamps;
 mod material;
 mod materials;
 mod measured;
+mod principled;
 
 use lamps::{disk_lamp, parallelogram_lamp, sphere_lamp, triangle_lamp};
 use material::Material;

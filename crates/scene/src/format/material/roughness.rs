@@ -105,13 +105,16 @@ pub(super) struct RoughnessKeys<'f> {
 /// The keys of a form that say how rough it is.
 macro_rules! roughness_keys {
     ($form:ident) => {
+        roughness_keys!($form, $form.distribution, $form.masking)
+    };
+    ($form:ident, $distribution:expr, $masking:expr) => {
         RoughnessKeys {
             alpha: $form.alpha.as_ref(),
             widths: [&$form.alpha_u, &$form.alpha_v],
             rotation_deg: &$form.tangent_rotation_deg,
             image: &$form.roughness_image,
-            distribution: $form.distribution,
-            masking: $form.masking,
+            distribution: $distribution,
+            masking: $masking,
         }
     };
 }

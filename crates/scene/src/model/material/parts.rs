@@ -22,6 +22,7 @@ impl MaterialKind {
         self.parts().into_iter().filter_map(|part| match part {
             Self::RoughConductor { facets, .. }
             | Self::RoughDielectric { facets, .. }
+            | Self::Principled { facets, .. }
             | Self::Plastic { facets: Some(facets), .. } => Some(facets),
             _ => None,
         })

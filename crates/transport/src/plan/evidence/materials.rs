@@ -28,7 +28,9 @@ pub(super) fn colour(kind: &MaterialKind, range_nm: [f64; 2]) -> Option<String> 
         }
         Parameter::Metal(Metal::Index(index)) => index.is_dispersive().then(|| metal_range(index, range_nm)),
         Parameter::Interface(media) => dispersion_of_media(media, range_nm),
-        Parameter::Coat(index) => index.is_dispersive().then(|| index_range(index, range_nm)),
+        Parameter::Coat(index) | Parameter::Principled(index) => {
+            index.is_dispersive().then(|| index_range(index, range_nm))
+        }
         Parameter::Sheet(PolarisingSheet::Polariser { transmittance, .. }) => (!transmittance.is_constant())
             .then(|| format!("transmittance {}", spread(range_nm, |nm| transmittance.eval(nm)))),
         Parameter::Sheet(PolarisingSheet::Retarder { retardance_rad, at_nm }) => at_nm.map(|at_nm| {

@@ -57,14 +57,15 @@ fn polarises(kind: &MaterialKind, range_nm: [f64; 2]) -> Option<(f64, String)> {
             metal(range_nm, |nm| (1.0, Metal::k_of(mean.eval(nm))))
         }
         Parameter::Metal(Metal::Index(index)) => metal(range_nm, |nm| index.eval(nm)),
-        // What states a reflectance or was measured treats s and p alike; sheets call for polarisation themselves.
+        // What states a reflectance, was measured or is principled treats s and p alike; sheets call for polarisation themselves.
         // Films are looked at with what they coat.
         Parameter::Reflectance(_)
         | Parameter::Sheet(_)
         | Parameter::Film(_)
         | Parameter::Grating(_)
         | Parameter::Fluorescence(_)
-        | Parameter::Measured(_) => None,
+        | Parameter::Measured(_)
+        | Parameter::Principled(_) => None,
     };
     let coated = kind.parts().into_iter().filter_map(|part| film(part, range_nm));
     let worst = kind.parameters().into_iter().filter_map(of_parameter).chain(coated);
