@@ -50,6 +50,8 @@ mod named;
 mod nested_media;
 mod phase_matrices;
 mod polarised;
+mod principled;
+mod principled_lobes;
 mod prisms;
 mod rami;
 mod relief;
@@ -352,7 +354,7 @@ pub fn truths() -> Vec<Truth> {
     LIST.clone()
 }
 
-const GROUPS: [fn() -> Vec<Truth>; 46] = [
+const GROUPS: [fn() -> Vec<Truth>; 47] = [
     lamps_behind_glass::truths,
     furnaces::truths,
     beckmann::truths,
@@ -392,6 +394,7 @@ const GROUPS: [fn() -> Vec<Truth>; 46] = [
     tints::truths,
     translucent::truths,
     measured::truths,
+    principled::truths,
     media::truths,
     nested_media::truths,
     lit_fog::truths,
