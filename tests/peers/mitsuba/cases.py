@@ -37,13 +37,18 @@ def of(file, known=None, samples=1, options=(), variant=None, **given):
     return Case(file, given, known, samples, options, variant)
 
 
+def lobes(roughness, anisotropic=0, metallic=0, tint=0, sheen=0, flatness=0, coat=0, glass=0, samples=1, variant=None):
+    """A principled surface with these lobes."""
+    given = dict(roughness=roughness, anisotropic=anisotropic, metallic=metallic, tint=tint)
+    return Case("principled-lobes", given | dict(sheen=sheen, flatness=flatness, coat=coat, glass=glass), None, samples, (), variant)
+
+
 LOSES = Known("Mitsuba's rough plastic loses light: a white one in a white furnace reads 0.79, ours 0.999", 0.11)
 BENT = Known("light that a bent normal sends through the surface is lost in Mitsuba; without the sky both agree", 0.006)
 EQUAL_ENERGY = Known(
     "an image that shines is of equal energy in Mitsuba's spectral variants, of D65 in its RGB variants and here",
     0.14,
 )
-PRINCIPLED = Known("approximated: no more diffuse light at grazing angles, Fresnel's equations in place of Schlick's", 0.1)
 PANE = Known("Mitsuba takes the mean of both polarisations before it adds the passes to and fro inside a pane", 0.02)
 
 POLARISED = "llvm_ad_spectral_polarized"
@@ -59,8 +64,17 @@ CASES = [
     of("rough-plastic", LOSES, alpha=0.2),
     *(of("metal", metal=metal) for metal in ("Ag", "Al", "Au", "Cr", "Cu", "W")),
     of("mirror"),
-    *(of("principled", PRINCIPLED, metallic=metal, glass=0) for metal in (0, 1)),
+    *(of("principled", metallic=metal, glass=0) for metal in (0, 0.5, 1)),
     of("principled", samples=3, metallic=0, glass=1),
+    of("principled", samples=3, metallic=0.25, glass=0.5),
+    lobes(roughness=0.8, sheen=1),
+    lobes(roughness=0.4, flatness=1),
+    lobes(roughness=0.7, coat=1),
+    # The luminance of a tint is estimated from four wavelengths in the spectral variants.
+    lobes(roughness=0.3, tint=1, sheen=0.5, variant="llvm_ad_rgb"),
+    lobes(roughness=0.5, anisotropic=0.8, metallic=1),
+    lobes(roughness=0.5, metallic=0.3, tint=0.5, sheen=0.6, flatness=0.5, coat=0.7, variant="llvm_ad_rgb"),
+    lobes(roughness=0.5, sheen=0.6, coat=0.7, glass=0.5, samples=3),
     *(of("rough-metal", distribution=d, alpha=a) for d in ("ggx", "beckmann") for a in (0.1, 0.4)),
     *(of("measured", what=what) for what in ("isotropic", "half-a-turn", "two-mirrors")),
     of("brushed", samples=2),

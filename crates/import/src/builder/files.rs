@@ -1,9 +1,11 @@
 //! Files of the scene that is being made: meshes and images.
 
+use std::io::Cursor;
 use std::path::Path;
 
 use etalon_scene::mesh::write_ply;
 use etalon_scene::{Encoding, Image, Mesh, NamedFile};
+use image::{ImageBuffer, ImageFormat, Rgb};
 
 use super::Builder;
 use crate::extension;
@@ -81,12 +83,22 @@ impl Builder<'_> {
         self.images.values().flatten().find(|known| known.file == file).map(|known| known.size)
     }
 
-    /// The mean of the texels of an image that was read in an encoding.
-    pub(crate) fn image_mean(&self, file: &str, encoding: Encoding) -> Option<[f64; 3]> {
-        let read = |((_, of), known): (&(String, Encoding), &Result<KnownImage, String>)| {
-            known.as_ref().ok().filter(|known| *of == encoding && known.file == file).map(|known| known.mean)
-        };
-        self.images.iter().find_map(read)
+    /// Adds an image of the square roots of another's linear channels, in steps of 1/65535, once. It is linear.
+    pub(crate) fn root_of_image(&mut self, file: &str, encoding: Encoding) -> Option<String> {
+        let key = format!("the roots of {file}");
+        if let Some(Some(known)) = self.known.get(&key) {
+            return Some(known.clone());
+        }
+        let bytes = &self.files.iter().find(|known| known.name == file)?.bytes;
+        let (image, _) = Image::decode(bytes, encoding).ok()?;
+        let steps = |channel: f64| (channel.clamp(0.0, 1.0).sqrt() * f64::from(u16::MAX)).round() as u16;
+        let texels = image.linear_texels().flat_map(|texel| texel.map(steps)).collect();
+        let roots = ImageBuffer::<Rgb<u16>, Vec<u16>>::from_raw(image.width, image.height, texels)?;
+        let mut png = Cursor::new(Vec::new());
+        roots.write_to(&mut png, ImageFormat::Png).ok()?;
+        let name = self.add_file("root", "png", png.into_inner());
+        self.known.insert(key, Some(name.clone()));
+        Some(name)
     }
 
     fn read_image(&mut self, name: &str, encoding: Encoding, place: &str) -> Result<KnownImage, String> {

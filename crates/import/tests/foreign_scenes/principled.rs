@@ -19,17 +19,19 @@ fn number(name: &str, value: f64) -> String {
 }
 
 #[test]
-fn a_principled_material_becomes_coat_metal_and_glass() {
+fn a_principled_material_becomes_a_principled_surface_and_glass() {
     let (plain, said) = material(&number("roughness", 0.5));
-    assert_eq!((&plain["type"], &plain["sides"], said.len()), (&"plastic".into(), &"front".into(), 1), "{said:?}");
-    assert!((plain["coat"].as_f64().unwrap() - 1.5).abs() < 1e-12, "what reflects 4 % head-on");
+    assert_eq!((&plain["type"], &plain["sides"]), (&"principled".into(), &"front".into()));
+    assert!(said.is_empty(), "nothing is approximated: {said:?}");
+    assert!((plain["index"].as_f64().unwrap() - 1.5).abs() < 1e-12, "what reflects 4 % head-on");
     assert_eq!(plain["alpha"], 0.25);
-    assert_eq!(plain["internal_reflection"], "uncoloured", "the base colour is that of the whole");
-    assert_eq!(material(&number("metallic", 1.0)).0["type"], "conductor");
+    assert_eq!(material(&number("metallic", 1.0)).0["metallic"], 1.0);
     assert_eq!(material(&number("spec_trans", 1.0)).0["type"], "dielectric");
     let (mixed, _) = material(&(number("metallic", 0.25) + &number("spec_trans", 0.5)));
-    assert_eq!([&mixed["type"], &mixed["second"]["type"], &mixed["first"]["type"]], ["blend", "conductor", "blend"]);
-    assert_eq!(mixed["weight"], 0.25);
+    assert_eq!([&mixed["type"], &mixed["first"]["type"]], ["blend", "blend"]);
+    let kinds = [&mixed["first"]["first"], &mixed["first"]["second"], &mixed["second"]].map(|part| &part["type"]);
+    assert_eq!(kinds, ["principled", "dielectric", "principled"]);
+    assert_eq!((&mixed["weight"], &mixed["second"]["metallic"]), (&0.25.into(), &1.into()));
     // √(1 − 0.9) = 0.316.
     let (brushed, _) = material(&number("anisotropic", 1.0));
     let widths = ["alpha_u", "alpha_v"].map(|key| brushed[key].as_f64().unwrap());
@@ -37,9 +39,33 @@ fn a_principled_material_becomes_coat_metal_and_glass() {
 }
 
 #[test]
-fn parts_of_it_that_nothing_stands_for_are_listed() {
-    let (_, said) = material(&(number("sheen", 0.5) + &number("clearcoat", 1.0) + &number("flatness", 0.0)));
-    assert_eq!(said[1..], ["line 1: \"sheen\" is left out", "line 1: \"clearcoat\" is left out"]);
+fn lobes_of_it_keep_their_strength() {
+    let lobes =
+        [("sheen", 0.5), ("sheen_tint", 0.25), ("clearcoat", 1.0), ("clearcoat_gloss", 0.5), ("flatness", 0.75)];
+    let keys: String = lobes.iter().map(|(name, value)| number(name, *value)).collect();
+    let (surface, said) = material(&(keys.clone() + &number("spec_tint", 0.125)));
+    assert!(said.is_empty(), "{said:?}");
+    let expected = [
+        ("sheen", 0.5),
+        ("sheen_tint", 0.25),
+        ("clear_coat", 1.0),
+        ("clear_coat_alpha", 0.0505),
+        ("flatness", 0.75),
+        ("specular_tint", 0.125),
+    ];
+    for (key, value) in expected {
+        assert!((surface[key].as_f64().unwrap() - value).abs() < 1e-12, "{key}: {surface}");
+    }
+    // Of half of the surface twice as much is as much.
+    let (half, said) = material(&(keys.clone() + &number("spec_trans", 0.5)));
+    assert!(said.is_empty(), "{said:?}");
+    assert_eq!((&half["first"]["sheen"], &half["first"]["clear_coat"]), (&1.0.into(), &2.0.into()));
+    let (_, said) = material(&(keys + &number("spec_trans", 1.0) + &number("spec_tint", 1.0)));
+    let expected =
+        ["line 1: what transmits reflects without \"spec_tint\"", "line 1: \"clearcoat\" of glass is left out"];
+    assert_eq!(said, expected);
+    let (turned, said) = material(&number("eta", 0.5));
+    assert_eq!((&turned["index"], said.len()), (&2.0.into(), 1), "{said:?}");
 }
 
 #[test]
