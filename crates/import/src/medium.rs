@@ -40,6 +40,18 @@ pub(crate) fn without_colour(vol: &mut Vec<u8>) {
     vol.extend(values.chunks_exact(3).flat_map(|rgb| ((rgb.iter().sum::<f64>() / 3.0) as f32).to_le_bytes()));
 }
 
+/// Brings the values of a .vol file down to 1. Whether there were any above it.
+pub(crate) fn shares(vol: &mut [u8]) -> bool {
+    let mut above = false;
+    for bytes in vol.get_mut(HEADER..).unwrap_or(&mut []).chunks_exact_mut(4) {
+        if f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]) > 1.0 {
+            bytes.copy_from_slice(&1.0_f32.to_le_bytes());
+            above = true;
+        }
+    }
+    above
+}
+
 /// Bytes of a .vol file before its values.
 const HEADER: usize = 48;
 

@@ -14,13 +14,15 @@ const HEADER: usize = 48;
 pub(crate) struct Grid {
     /// Cells along x, y and z.
     pub(crate) cells: [u32; 3],
-    /// Their numbers, 0 or above; x runs first, then y.
+    /// Numbers in each.
+    pub(crate) channels: usize,
+    /// Their numbers, 0 or above; channels run first, then x, then y.
     pub(crate) values: Arc<[f32]>,
     /// Corners of the box, m.
     pub(crate) box_m: [[f64; 3]; 2],
 }
 
-/// Reads a .vol file of one channel.
+/// Reads a .vol file.
 ///
 /// # Errors
 /// A sentence that says what is wrong with it.
@@ -41,13 +43,14 @@ pub(crate) fn read_vol(bytes: &[u8]) -> Result<Grid, String> {
         return Err(format!("it says that it has {counts:?} cells and channels: each must be at least 1"));
     }
     let [nx, ny, nz, channels] = counts.map(|count| count as u64);
-    if channels != 1 {
-        return Err(format!("it has {channels} channels; a density has 1"));
-    }
-    let cells = u128::from(nx) * u128::from(ny) * u128::from(nz);
+    let cells = u128::from(nx) * u128::from(ny) * u128::from(nz) * u128::from(channels);
     let numbers = &bytes[HEADER..];
     if numbers.len() as u128 != 4 * cells {
-        return Err(format!("{nx} × {ny} × {nz} cells take {} bytes, but it has {}", 4 * cells, numbers.len()));
+        return Err(format!(
+            "{nx} × {ny} × {nz} cells of {channels} take {} bytes, but it has {}",
+            4 * cells,
+            numbers.len()
+        ));
     }
     let box_m = [0, 1].map(|corner| [0, 1, 2].map(|k| f64::from(f32::from_le_bytes(word(24 + 12 * corner + 4 * k)))));
     if (0..3).any(|k| !(box_m[0][k] < box_m[1][k] && box_m[0][k].is_finite() && box_m[1][k].is_finite())) {
@@ -56,9 +59,9 @@ pub(crate) fn read_vol(bytes: &[u8]) -> Result<Grid, String> {
     let values: Arc<[f32]> =
         numbers.chunks_exact(4).map(|four| f32::from_le_bytes(four.try_into().expect("four bytes"))).collect();
     if let Some(place) = values.iter().position(|value| !(*value >= 0.0 && value.is_finite())) {
-        return Err(format!("number {place} is {}: a density is 0 or above", values[place]));
+        return Err(format!("number {place} is {}: all are 0 or above", values[place]));
     }
-    Ok(Grid { cells: [nx as u32, ny as u32, nz as u32], values, box_m })
+    Ok(Grid { cells: [nx as u32, ny as u32, nz as u32], channels: channels as usize, values, box_m })
 }
 
 #[cfg(test)]
@@ -77,7 +80,7 @@ mod tests {
     fn a_grid_is_read_as_it_was_written() {
         let grid = read_vol(&file([2, 1, 2], 1, &[0.0, 1.0, 2.0, 3.5])).expect("it is right");
         assert_eq!((grid.cells, grid.box_m), ([2, 1, 2], [[0.0; 3], [1.0, 2.0, 3.0]]));
-        assert_eq!(grid.values[..], [0.0, 1.0, 2.0, 3.5]);
+        assert_eq!((grid.channels, &grid.values[..]), (1, &[0.0, 1.0, 2.0, 3.5][..]));
     }
 
     #[test]
@@ -90,7 +93,7 @@ mod tests {
         wrong(&file([2, 1, 2], 1, &[0.0; 3]), "16 bytes, but it has 12");
         wrong(&file([i32::MAX; 3], 1, &[0.0; 3]), "bytes, but it has 12");
         wrong(&file([2, 0, 2], 1, &[]), "at least 1");
-        wrong(&file([1, 1, 1], 3, &[0.0; 3]), "3 channels");
+        wrong(&file([1, 1, 1], 3, &[0.0; 2]), "12 bytes, but it has 8");
         wrong(&file([1, 1, 1], 1, &[-1.0]), "number 0 is -1");
         wrong(&file([1, 1, 1], 1, &[f32::NAN]), "number 0 is NaN");
         let mut old = file([1, 1, 1], 1, &[1.0]);

@@ -38,7 +38,9 @@ pub use material::{
     FacetDistribution, FacetMasking, InternalReflection, LEAST_ALPHA, Material, MaterialKind, Metal, Microfacets,
     PolarisingSheet, PrincipledLobes, Side,
 };
-pub use medium::{DensityGrid, ExponentialDensity, Medium, MediumDensity, PhaseFunction, PhaseMatrix, PhaseTable};
+pub use medium::{
+    AlbedoGrid, DensityGrid, ExponentialDensity, Medium, MediumDensity, PhaseFunction, PhaseMatrix, PhaseTable,
+};
 pub use meter::{Meter, MeterKind, MeterQuantity, Receiver};
 pub use motion::{CameraMotion, Keyframe, Motion};
 pub use parameter::{Parameter, ParameterMut};

@@ -7,7 +7,7 @@ use super::Walk;
 use super::colour::{Of, times};
 use super::element::Element;
 use crate::matrix::steps;
-use crate::medium::{blended, in_unit_box, means, vol, without_colour};
+use crate::medium::{blended, in_unit_box, means, shares, vol, without_colour};
 
 /// What a grid says of a medium.
 struct Grid {
@@ -38,11 +38,13 @@ impl<'a> Walk<'a, '_, '_> {
         let place = &element.place;
         let scale = element.number("scale")?.unwrap_or(1.0);
         let mut made = json!({});
-        let albedo = match element.property("albedo") {
-            None => json!(0.75),
-            Some(stated) => self.uniform(stated, Of::Reflectance)?,
-        };
-        made["albedo"] = albedo;
+        match element.property("albedo") {
+            None => made["albedo"] = json!(0.75),
+            Some(stated) => match self.albedo_grid(stated)? {
+                Some(grid) => (made["albedo"], made["albedo_grid"]) = (json!(1), grid),
+                None => made["albedo"] = self.uniform(stated, Of::Reflectance)?,
+            },
+        }
         made["extinction_per_m"] = match element.plugin() {
             "homogeneous" => match element.property("sigma_t") {
                 None => json!(scale),
@@ -143,23 +145,47 @@ impl<'a> Walk<'a, '_, '_> {
         if means.len() == 3 {
             without_colour(&mut bytes);
         }
+        let mut density = self.placed_grid(volume, "density", bytes)?;
+        density["type"] = json!("grid");
+        Ok(Some(Grid { density, extinction }))
+    }
+
+    /// A grid of albedos; `None` of what is the same everywhere.
+    fn albedo_grid(&mut self, stated: &'a Element) -> Result<Option<Value>, String> {
+        let volume = if stated.tag == "ref" { self.ids.of(stated)? } else { stated };
+        if volume.tag != "volume" || volume.plugin() != "gridvolume" {
+            return Ok(None);
+        }
+        volume.mark();
+        let place = &volume.place;
+        let name = volume.string("filename").ok_or_else(|| format!("{place}: it has no \"filename\""))?.to_owned();
+        let mut bytes = self.builder.bytes_of(&name, place)?;
+        means(&bytes).map_err(|why| format!("{place}: \"{name}\": {why}"))?;
+        if shares(&mut bytes) {
+            self.builder.approximate(place, "albedos above 1 become 1");
+        }
+        self.placed_grid(volume, "albedo", bytes).map(Some)
+    }
+
+    /// The file of a grid, and where it lies.
+    fn placed_grid(&mut self, volume: &'a Element, kind: &str, mut bytes: Vec<u8>) -> Result<Value, String> {
+        let place = &volume.place;
         if !volume.flag("use_grid_bbox")?.unwrap_or(false) {
-            in_unit_box(&mut bytes).map_err(|why| format!("{place}: \"{name}\": {why}"))?;
+            in_unit_box(&mut bytes).map_err(|why| format!("{place}: {why}"))?;
         }
         if volume.string("filter_type").is_some_and(|filter| filter != "trilinear") {
-            self.builder.approximate(place, "densities become trilinear");
+            self.builder.approximate(place, "its numbers become trilinear");
         }
         volume.string("wrap_mode");
         volume.flag("raw")?;
         let map = self.placement(volume)?;
-        let file = self.builder.add_file("density", "vol", bytes);
+        let mut grid = json!({ "file": self.builder.add_file(kind, "vol", bytes) });
         volume.list_unused(self.builder);
-        let mut density = json!({ "type": "grid", "file": file });
         let transform = steps(&map);
         if !transform.is_null() {
-            density["transform"] = transform;
+            grid["transform"] = transform;
         }
-        Ok(Some(Grid { density, extinction }))
+        Ok(grid)
     }
 
     fn phase(&mut self, element: &'a Element) -> Result<Value, String> {

@@ -116,7 +116,7 @@ fn furnaces() -> Vec<Truth> {
 
 /// A slab below z = 0 and wide beyond sight, seen from above at a cosine to the normal, under a sky of 1. What else there is stands below
 /// it, or behind the eye.
-fn slab(depth_m: f64, medium: &Value, mu: f64) -> Scene {
+pub(super) fn slab(depth_m: f64, medium: &Value, mu: f64) -> Scene {
     let sine = (1.0 - mu * mu).sqrt();
     Scene::orthographic([sine, 0.0, mu], [0.0; 3], 1e-3)
         .thing(json!({ "shape": block([-1e4, -1e4, -depth_m], [1e4, 1e4, 0.0]), "material": boundary(medium) }))
@@ -166,7 +166,7 @@ fn half_spaces() -> Vec<Truth> {
     list
 }
 
-fn of_half_space(name: &str, scene: &Scene, albedo: f64, mu: f64, value: f64) -> Truth {
+pub(super) fn of_half_space(name: &str, scene: &Scene, albedo: f64, mu: f64, value: f64) -> Truth {
     let single = |x: f64| 0.5 * albedo * (1.0 - x * (1.0 + 1.0 / x).ln());
     Truth::new(name, scene, value, format!("1 − H(μ)√(1 − ϖ), ϖ = {albedo}, μ = {mu}"))
         .because("By reciprocity an eye sees of a half-space under a sky of 1 the share of a beam along its sight that comes back.")

@@ -11,6 +11,7 @@
 
 mod absorption;
 mod air;
+mod albedo_grids;
 mod beams;
 mod beckmann;
 mod cameras;
@@ -354,7 +355,7 @@ pub fn truths() -> Vec<Truth> {
     LIST.clone()
 }
 
-const GROUPS: [fn() -> Vec<Truth>; 47] = [
+const GROUPS: [fn() -> Vec<Truth>; 48] = [
     lamps_behind_glass::truths,
     furnaces::truths,
     beckmann::truths,
@@ -396,6 +397,7 @@ const GROUPS: [fn() -> Vec<Truth>; 47] = [
     measured::truths,
     principled::truths,
     media::truths,
+    albedo_grids::truths,
     nested_media::truths,
     lit_fog::truths,
     phase_matrices::truths,

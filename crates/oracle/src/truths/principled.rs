@@ -265,6 +265,7 @@ fn tints() -> Vec<Truth> {
         Truth::new(name, &scene, value, "f cos θ_i of a white tint and a grey base of the same luminance")
             .because("A tint is the base's reflectance over its luminance under D65, so that of the tinted lobe does not change.")
             .confirmed("spherical triangles", 1e-9, move || shown.by_angles(o, i, apart))
+            .allows(2e-4 * value, "luminances of primaries of four digits; the spectrum that stands for a colour shows it to 1e-4")
             .or_else("no lobe", value - lobe)
             .claims(Claim::PhotometricSensor)
             .sees(2e-3)

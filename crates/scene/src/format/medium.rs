@@ -9,8 +9,11 @@ use super::spectrum::SpectrumForm;
 use etalon_optics::Spectrum;
 
 use crate::files::Files;
+use crate::grid::Grid;
 use crate::json::{Code, Direction, List, NonNegative, Optional, Positive, Reader, Required, Rule, Spanned};
-use crate::model::{DensityGrid, ExponentialDensity, Medium, MediumDensity, PhaseFunction, PhaseMatrix, PhaseTable};
+use crate::model::{
+    AlbedoGrid, DensityGrid, ExponentialDensity, Medium, MediumDensity, PhaseFunction, PhaseMatrix, PhaseTable,
+};
 
 crate::record! {
     /// What fills a space, and what it does to light on its way.
@@ -23,6 +26,8 @@ crate::record! {
         extinction_per_m: Optional<SpectrumForm>,
         /// With it: the share of extinction that is scattering, from 0 to 1.
         albedo: Optional<SpectrumForm>,
+        /// A factor on the albedo at each place, from 0 to 1.
+        albedo_grid: Optional<AlbedoGridForm>,
         /// Where scattered light goes.
         phase: Required<PhaseForm> = r#"{"type": "isotropic"}"#,
         /// What both coefficients are multiplied by at each place: the medium is the same everywhere if this is left out.
@@ -34,6 +39,8 @@ crate::record! {
         Rule::NotBoth("extinction_per_m", "scattering_per_m"),
         Rule::Needs("extinction_per_m", &["albedo"]),
         Rule::Needs("albedo", &["extinction_per_m"]),
+        Rule::Needs("albedo_grid", &["albedo"]),
+        Rule::NotBoth("albedo_grid", "source_radiance"),
     ]
 }
 
@@ -144,6 +151,16 @@ crate::record! {
     }
 }
 
+crate::record! {
+    /// Shares or colours of a grid, in trilinear proportion between the middles of its cells, and the same from the outermost middles on.
+    pub(crate) struct AlbedoGridForm + comment {
+        /// A .vol file of one channel or of three (linear red, green and blue), relative to this file's folder.
+        file: Required<Spanned<String>>,
+        /// From the coordinates of the file's box to the world: steps, the first of which is applied first.
+        transform: Required<Spanned<List<Box<Step>>>> = "[]",
+    }
+}
+
 /// The medium of a form.
 pub(super) fn medium<'f>(
     form: &'f MediumForm,
@@ -177,8 +194,13 @@ pub(super) fn medium<'f>(
         Optional::Given(form) => density(form, files, reader),
         Optional::Invalid => None,
     };
+    let albedo = match &form.albedo_grid {
+        Optional::Absent => Some(None),
+        Optional::Given(form) => albedo_grid(form, files, reader).map(Some),
+        Optional::Invalid => None,
+    };
     let (absorption, scattering) = coefficients?;
-    Some(Medium { absorption, scattering, phase: phase?, source: source?, density: density? })
+    Some(Medium { absorption, scattering, phase: phase?, source: source?, density: density?, albedo: albedo? })
 }
 
 /// Absorption and scattering of an extinction by the share that is scattering.
@@ -197,7 +219,7 @@ fn density(form: &DensityForm, files: &mut Files, reader: &mut Reader<'_>) -> Op
         })),
         DensityForm::Grid(form) => {
             let transform = form.transform.as_ref().and_then(|steps| transform(&steps.value, steps.at.head(), reader));
-            let grid = form.file.as_ref().and_then(|name| files.grid(name, reader));
+            let grid = form.file.as_ref().and_then(|name| grid(name, &[1], "a density has 1", files, reader));
             let (grid, scale) = (grid?, form.scale?.0);
             let values = match scale {
                 1.0 => grid.values,
@@ -219,6 +241,40 @@ fn density(form: &DensityForm, files: &mut Files, reader: &mut Reader<'_>) -> Op
             }))
         }
     }
+}
+
+/// The grid of a file that has one of these numbers of channels.
+fn grid(
+    name: &Spanned<String>,
+    channels: &[usize],
+    has: &str,
+    files: &mut Files,
+    reader: &mut Reader<'_>,
+) -> Option<Grid> {
+    let grid = files.grid(name, reader)?;
+    if !channels.contains(&grid.channels) {
+        reader.error(Code::File, name.at, format!("{}: it has {} channels; {has}", name.value, grid.channels));
+        return None;
+    }
+    Some(grid)
+}
+
+fn albedo_grid(form: &AlbedoGridForm, files: &mut Files, reader: &mut Reader<'_>) -> Option<AlbedoGrid> {
+    let transform = form.transform.as_ref().and_then(|steps| transform(&steps.value, steps.at.head(), reader));
+    let name = form.file.as_ref()?;
+    let grid = grid(name, &[1, 3], "an albedo has 1 or 3", files, reader);
+    let (transform, grid) = (transform?, grid?);
+    if let Some(place) = grid.values.iter().position(|value| *value > 1.0) {
+        let message = format!("{}: number {place} is {}: an albedo is at most 1", name.value, grid.values[place]);
+        reader.error(Code::OutOfRange, name.at, message);
+        return None;
+    }
+    let colour = |numbers: &[f32]| match *numbers {
+        [red, green, blue] => [red, green, blue],
+        _ => [numbers[0]; 3],
+    };
+    let colours = grid.values.chunks_exact(grid.channels).map(colour).collect();
+    Some(AlbedoGrid { cells: grid.cells, colours, box_m: grid.box_m, transform })
 }
 
 fn phase(form: &PhaseForm, reader: &mut Reader<'_>) -> Option<PhaseFunction> {

@@ -18,6 +18,9 @@ pub struct Medium {
     pub source: Option<Spectrum>,
     /// What both coefficients are multiplied by at each place.
     pub density: MediumDensity,
+    /// The share of `scattering` that is scattered at each place; the rest is absorbed. All is scattered without it. A medium that has it emits
+    /// nothing.
+    pub albedo: Option<AlbedoGrid>,
 }
 
 /// How dense a medium is at each place, relative to what its coefficients say.
@@ -54,6 +57,35 @@ pub struct DensityGrid {
     pub box_m: [[f64; 3]; 2],
     /// From these to the world.
     pub transform: Transform,
+}
+
+/// Colours at the middles of the cells of a box, in trilinear proportion between them; from the outermost middles on everything is the same.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AlbedoGrid {
+    /// Cells along x, y and z; at least one each.
+    pub cells: [u32; 3],
+    /// Their linear red, green and blue, each in [0, 1]; x runs first, then y.
+    pub colours: Arc<[[f32; 3]]>,
+    /// Corners of the box in its own coordinates, m.
+    pub box_m: [[f64; 3]; 2],
+    /// From these to the world.
+    pub transform: Transform,
+}
+
+impl AlbedoGrid {
+    /// Whether all colours are grey.
+    pub fn is_grey(&self) -> bool {
+        self.colours.iter().all(|[r, g, b]| r == g && g == b)
+    }
+
+    /// The mean of the cells.
+    pub fn mean(&self) -> [f64; 3] {
+        let sum = self
+            .colours
+            .iter()
+            .fold([0.0; 3], |sum: [f64; 3], colour| [0, 1, 2].map(|c| sum[c] + f64::from(colour[c])));
+        sum.map(|channel| channel / self.colours.len() as f64)
+    }
 }
 
 /// The distribution of the directions into which a medium scatters light; its integral over the sphere is 1.
@@ -128,6 +160,7 @@ impl Medium {
             phase: PhaseFunction::Isotropic,
             source: None,
             density: MediumDensity::Uniform,
+            albedo: None,
         }
     }
 
@@ -138,7 +171,7 @@ impl Medium {
 
     /// Whether it absorbs light.
     pub fn absorbs(&self) -> bool {
-        !self.absorption.is_zero()
+        !self.absorption.is_zero() || (self.scatters() && self.albedo.is_some())
     }
 
     /// Whether it scatters light.

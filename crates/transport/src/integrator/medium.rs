@@ -74,7 +74,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
                     let hero = lit.scattered_at(distance)[0];
                     vertex.share_of_connections = hero / (hero + in_beams);
                 }
-                self.beta *= weight;
+                self.beta *= weight * medium.albedo(&self.wavelengths.lambda_nm, vertex.point.position);
                 self.lanes.follow(lane_density);
                 self.stack = vertex.stack;
                 observer.scattering(self.vertex, vertex.point.position, self.beta);
@@ -134,7 +134,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         let by_lamp = probability * seen.density(distance);
         let by_scattering = vertex.density * world.lights.probability(light, vertex.point.position);
         let weight = sample.scale / (by_lamp + by_scattering);
-        let f_cos = lit.scattered_toward(distance) * phase;
+        let f_cos = lit.scattered_toward(distance, &self.wavelengths.lambda_nm) * phase;
         if f_cos.is_zero() {
             return;
         }
@@ -237,8 +237,9 @@ impl<const N: usize> MediumWay<'_, N> {
     }
 
     /// The share of light that a unit's length scatters at a distance and that comes to the beginning.
-    pub(super) fn scattered_toward(&self, distance: f64) -> Lanes<f64, N> {
-        self.through(distance) * self.coefficients.scattering
+    pub(super) fn scattered_toward(&self, distance: f64, lambda_nm: &Lanes<f64, N>) -> Lanes<f64, N> {
+        let albedo = self.medium.albedo(lambda_nm, self.way.origin + self.way.direction * distance);
+        self.through(distance) * self.coefficients.scattering * albedo
     }
 }
 

@@ -1,5 +1,6 @@
 //! A medium as paths meet it.
 
+use super::albedo::AlbedoGrid;
 use super::density::{MediumDensity, Way};
 use super::phase::Phase;
 use crate::frame::SceneFrame;
@@ -18,6 +19,8 @@ pub(crate) struct Medium {
     /// Where it scatters light.
     pub phase: Phase,
     density: MediumDensity,
+    /// The share of scattering that is not absorbed, if it is not 1.
+    albedo: Option<Box<AlbedoGrid>>,
 }
 
 /// Coefficients of a medium in each lane where its density is 1, m⁻¹.
@@ -40,6 +43,7 @@ impl Medium {
             source: medium.shines().map(spectrum),
             phase: Phase::new(&medium.phase),
             density: MediumDensity::new(&medium.density, frame),
+            albedo: medium.albedo.as_ref().map(|grid| Box::new(AlbedoGrid::new(grid, frame))),
         })
     }
 
@@ -67,6 +71,12 @@ impl Medium {
     #[inline]
     pub(crate) fn density(&self, place: Vec3<f64>) -> f64 {
         self.density.at(place)
+    }
+
+    /// The share of its scattering coefficient that is scattered at a place, in each lane; the rest is absorbed.
+    #[inline]
+    pub(crate) fn albedo<const N: usize>(&self, lambda_nm: &Lanes<f64, N>, place: Vec3<f64>) -> Lanes<f64, N> {
+        self.albedo.as_ref().map_or(Lanes::ONE, |grid| grid.lanes(lambda_nm, place))
     }
 
     /// How far along a way a column is reached that is less than that of the whole way.

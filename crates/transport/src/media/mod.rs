@@ -14,6 +14,7 @@
 //! that goes through it goes on in there, or leaves it. What such a body holds is surrounded by its interior as long as it is not itself
 //! such a body.
 
+mod albedo;
 mod density;
 mod equiangular;
 mod interaction;

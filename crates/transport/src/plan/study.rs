@@ -5,7 +5,7 @@ use super::{EffectName, PathLoop, three_channels};
 use crate::bsdf::properties;
 use crate::texture;
 use etalon_optics::colour::{colour_matching, rec709_luminance};
-use etalon_optics::spectrum::whole_nm;
+use etalon_optics::spectrum::{Outside, RgbBasis, whole_nm};
 use etalon_optics::{ComplexIndex, RefractiveIndex, Spectrum, reference_nm};
 use etalon_scene::{
     Filter, Image, ImageTexture, LightSampling, MaterialKind, Medium, Mesh, Metal, Object, ParameterMut,
@@ -135,7 +135,11 @@ fn leave_out(effect: EffectName, scene: &mut Scene) {
                 turn_grey(&mut material.kind, range_nm);
             }
             for medium in media_mut(scene) {
-                let Medium { absorption, scattering, source, .. } = medium;
+                let Medium { absorption, scattering, source, albedo, .. } = medium;
+                if let Some(grid) = albedo {
+                    let grey = |colour: &[f32; 3]| [rec709_luminance(colour.map(f64::from)) as f32; 3];
+                    grid.colours = grid.colours.iter().map(grey).collect();
+                }
                 for spectrum in [absorption, scattering].into_iter().chain(source) {
                     *spectrum = grey(spectrum, range_nm);
                 }
@@ -186,8 +190,21 @@ fn leave_out(effect: EffectName, scene: &mut Scene) {
                 }
             }
         }
-        EffectName::Absorption => media_mut(scene).for_each(|medium| medium.absorption = Spectrum::Constant(0.0)),
-        EffectName::Scattering => media_mut(scene).for_each(|medium| medium.scattering = Spectrum::Constant(0.0)),
+        EffectName::Absorption => media_mut(scene).for_each(|medium| {
+            medium.absorption = Spectrum::Constant(0.0);
+            medium.albedo = None;
+        }),
+        EffectName::Scattering => media_mut(scene).for_each(|medium| {
+            // What a grid leaves to be absorbed is, by its mean.
+            if let Some(grid) = medium.albedo.take() {
+                let basis = RgbBasis::get();
+                let (mean, nm) = (grid.mean(), whole_nm(range_nm).collect::<Vec<_>>());
+                let rest = |nm: f64| medium.scattering.eval(nm) * (1.0 - basis.reflectance(mean, nm));
+                let values = nm.iter().map(|&nm| medium.absorption.eval(nm) + rest(nm)).collect();
+                medium.absorption = Spectrum::tabulated(nm, values, Outside::Hold).expect("sums of what is valid");
+            }
+            medium.scattering = Spectrum::Constant(0.0);
+        }),
         // Sheets do to unpolarised light what they do, and no more.
         EffectName::Polarisation => scene.film.stokes = false,
         EffectName::Textures => {

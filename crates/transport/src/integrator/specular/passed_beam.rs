@@ -90,7 +90,8 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             return;
         }
         let (beta, lanes) = (self.beta, self.lanes);
-        self.beta *= lit.scattered_toward(distance) * (1.0 / (beams.density(distance) + hero));
+        self.beta *=
+            lit.scattered_toward(distance, &self.wavelengths.lambda_nm) * (1.0 / (beams.density(distance) + hero));
         self.lanes.follow(densities * (1.0 / hero));
         let numbers = Numbers { first: further.set(SEED_SETS), further };
         self.connect_by(world, connections, &vertex, numbers, counters, observer);

@@ -6,7 +6,7 @@
 use super::Way;
 use crate::frame::{Affine, SceneFrame};
 use etalon_optics::Vec3;
-use etalon_scene::DensityGrid;
+use etalon_scene::{DensityGrid, Transform};
 use glam::{DAffine3, DVec3};
 use std::sync::Arc;
 
@@ -152,25 +152,33 @@ impl Piece {
     }
 }
 
+/// From the frame to coordinates in which the middle of cell (i, j, k) of a box is (i, j, k).
+pub(in crate::media) fn to_cells(
+    cells: [u32; 3],
+    box_m: [[f64; 3]; 2],
+    transform: &Transform,
+    frame: &SceneFrame,
+) -> DAffine3 {
+    let [least, greatest] = box_m.map(DVec3::from_array);
+    let per_cell = (greatest - least) / DVec3::from_array(cells.map(f64::from));
+    // From cells to the box, to the world, to the frame.
+    let to_box = DAffine3::from_scale_rotation_translation(per_cell, glam::DQuat::IDENTITY, least + 0.5 * per_cell);
+    let placed = Affine::new(transform);
+    let to_world = |p: DVec3| placed.point(to_box.transform_point3(p).to_array());
+    let origin = frame.point(to_world(DVec3::ZERO));
+    let axis = |k: usize| {
+        let step = placed.vector(to_box.transform_vector3(DVec3::AXES[k]).to_array()) * frame.per_m();
+        DVec3::from_array(step.to_array())
+    };
+    DAffine3::from_cols(axis(0), axis(1), axis(2), DVec3::from_array(origin.to_array())).inverse()
+}
+
 impl Grid {
     pub(super) fn new(grid: &DensityGrid, frame: &SceneFrame) -> Self {
         let cells = grid.cells.map(i64::from);
-        let [least, greatest] = grid.box_m.map(DVec3::from_array);
-        let counts = DVec3::from_array(grid.cells.map(f64::from));
-        let per_cell = (greatest - least) / counts;
-        // From cells to the box, to the world, to the frame.
-        let to_box = DAffine3::from_scale_rotation_translation(per_cell, glam::DQuat::IDENTITY, least + 0.5 * per_cell);
-        let placed = Affine::new(&grid.transform);
-        let to_world = |p: DVec3| placed.point(to_box.transform_point3(p).to_array());
-        let origin = frame.point(to_world(DVec3::ZERO));
-        let axis = |k: usize| {
-            let step = placed.vector(to_box.transform_vector3(DVec3::AXES[k]).to_array()) * frame.per_m();
-            DVec3::from_array(step.to_array())
-        };
-        let from_cells = DAffine3::from_cols(axis(0), axis(1), axis(2), DVec3::from_array(origin.to_array()));
+        let to_cells = to_cells(grid.cells, grid.box_m, &grid.transform, frame);
         let blocks = cells.map(|count| (count + 1 + BLOCK - 1) / BLOCK);
-        let mut made =
-            Self { cells, values: grid.values.clone(), to_cells: from_cells.inverse(), blocks, filled: Vec::new() };
+        let mut made = Self { cells, values: grid.values.clone(), to_cells, blocks, filled: Vec::new() };
         made.filled = made.find_filled();
         made
     }

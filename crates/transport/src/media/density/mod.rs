@@ -13,6 +13,7 @@ use crate::frame::SceneFrame;
 use etalon_optics::Vec3;
 use exponential::Exponential;
 use grid::Grid;
+pub(super) use grid::to_cells;
 
 /// A straight way, in the frame.
 #[derive(Clone, Copy, Debug)]

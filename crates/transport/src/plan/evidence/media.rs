@@ -27,7 +27,13 @@ fn coefficient(symbol: &str, spectrum: &Spectrum, range_nm: [f64; 2]) -> String 
 
 /// What absorbs.
 pub(super) fn absorption(scene: &Scene) -> Option<String> {
-    first_medium(scene, |medium, range_nm| medium.absorbs().then(|| coefficient("σ", &medium.absorption, range_nm)))
+    first_medium(scene, |medium, range_nm| match &medium.albedo {
+        Some(grid) if medium.absorbs() && medium.absorption.is_zero() => {
+            let [r, g, b] = grid.mean().map(|channel| 1.0 - channel);
+            Some(format!("by a grid of albedos, {r:.3}, {g:.3} and {b:.3} of extinction in the mean"))
+        }
+        _ => medium.absorbs().then(|| coefficient("σ", &medium.absorption, range_nm)),
+    })
 }
 
 /// What scatters.
@@ -40,6 +46,9 @@ pub(super) fn coloured(scene: &Scene) -> Option<String> {
     first_medium(scene, |medium, range_nm| match () {
         () if !medium.absorption.is_constant() => Some(coefficient("σ", &medium.absorption, range_nm)),
         () if !medium.scattering.is_constant() => Some(coefficient("σₛ", &medium.scattering, range_nm)),
+        () if medium.albedo.as_ref().is_some_and(|grid| !grid.is_grey()) => {
+            Some("albedo by a grid of colours".to_owned())
+        }
         () => None,
     })
 }
