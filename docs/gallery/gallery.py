@@ -71,6 +71,9 @@ PICTURES = [
             "colour. The outer ring is Michel-Lévy's chart from 1 to 24 sheets and back. The varnished floor polarises what it mirrors."),
     Picture("room", "scenes/room.json", ["--exposure", "1.0", "--curve", "agx"],
             "A room into which the sun shines. All but the patches of sun is lit by way of the walls: the floor throws warm light on the shelves.", error="10%"),
+    Picture("water", "scenes/water.json", ["--exposure", "0.3"],
+            "A glass of water on a wooden table, on a hazy morning. Look at the straw, which breaks at the surface; at the trees upside down in the water; and "
+            "at the light that glass and water gather on the table. The sky is an image, and nothing else shines.", size="480x360"),
     Picture("chess", "scenes/chess.json", ["--exposure", "1.5", "--curve", "agx"],
             "Chess men close up, by a lens of 75 mm at f/4. The disks behind are images of the lens, one for each lamp of the string.", error="10%"),
 ]

@@ -204,6 +204,7 @@ fn materials_and_spectra() {
         phase: PhaseFunction::DoubleHenyeyGreenstein { g: [0.875, -0.25], weight: 0.75 },
         source: Some(Spectrum::blackbody(5000.0, 1e-3).expect("right")),
         density: MediumDensity::Uniform,
+        albedo: None,
     };
     assert_eq!(kind(&scene, "drops"), &MaterialKind::Boundary { priority: Some(5) });
     assert_eq!((medium("cloud"), kind(&scene, "cloud")), (Some(cloud), &MaterialKind::Boundary { priority: None }));
