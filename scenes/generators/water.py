@@ -105,7 +105,7 @@ def water():
 
 
 def straw():
-    """A paper straw with stripes: it stands in the water and leans on the rim."""
+    """A paper straw with stripes, which stands in the water."""
     begins, ends, stripe = (-0.017, BASE + 0.0035, 0.006), (0.048, 0.176, -0.020), 0.0085
     length = math.dist(begins, ends)
     along = lambda t: [round(a + (b - a) * t / length, 6) for a, b in zip(begins, ends)]

@@ -143,7 +143,7 @@ impl ImageTexture {
 
 /// The two texels around a coordinate along one axis of `size` texels, and the share of the second.
 #[inline]
-fn place(at: f64, size: usize, wrap: Wrap, filter: TextureFilter) -> (usize, usize, f64) {
+pub(crate) fn place(at: f64, size: usize, wrap: Wrap, filter: TextureFilter) -> (usize, usize, f64) {
     let within = match wrap {
         Wrap::Repeat => at - at.floor(),
         Wrap::Mirror => {

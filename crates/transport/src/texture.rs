@@ -80,36 +80,27 @@ impl PathTexture {
     pub fn lanes<const N: usize>(&self, lambda_nm: &Lanes<f64, N>, at: TexturePoint) -> Lanes<f64, N> {
         match self {
             Self::Uniform(spectrum) => spectrum.lanes(lambda_nm),
-            Self::Image { texture, basis, .. } => {
-                let rgb = texture.eval(at.uv);
-                Lanes::from_fn(|lane| basis.reflectance(rgb, lambda_nm[lane]))
-            }
-            Self::VertexColours { basis, .. } => {
-                let rgb = self.vertex_colour(at);
+            Self::Image { basis, .. } | Self::VertexColours { basis, .. } => {
+                let rgb = self.colour(at).unwrap_or([0.0; 3]);
                 Lanes::from_fn(|lane| basis.reflectance(rgb, lambda_nm[lane]))
             }
         }
     }
 
-    /// What colours of vertices show at a place; white of any other.
+    /// The colour at a place, of an image or of the vertices around.
     #[inline]
-    fn vertex_colour(&self, at: TexturePoint) -> [f64; 3] {
-        let Self::VertexColours { factor, grey, image, .. } = self else { return [1.0; 3] };
+    pub(crate) fn colour(&self, at: TexturePoint) -> Option<[f64; 3]> {
+        let (factor, grey, image) = match self {
+            Self::Uniform(_) => return None,
+            Self::Image { texture, .. } => return Some(texture.eval(at.uv)),
+            Self::VertexColours { factor, grey, image, .. } => (factor, grey, image),
+        };
         let mut rgb = [0, 1, 2].map(|c| at.colour[c] * factor[c]);
         if let Some(image) = image {
             let shown = image.eval(at.uv);
             rgb = [0, 1, 2].map(|c| rgb[c] * shown[c]);
         }
-        if *grey { [rec709_luminance(rgb); 3] } else { rgb }
-    }
-
-    /// The luminance at a place under D65, 1 of a perfect reflector.
-    pub(crate) fn luminance(&self, at: TexturePoint) -> f64 {
-        match self {
-            Self::Uniform(spectrum) => Illuminant::D65.xyz_of_reflectance(|nm| spectrum.eval(nm))[1],
-            Self::Image { texture, .. } => rec709_luminance(texture.eval(at.uv)),
-            Self::VertexColours { .. } => rec709_luminance(self.vertex_colour(at)),
-        }
+        Some(if *grey { [rec709_luminance(rgb); 3] } else { rgb })
     }
 
     /// The spectrum, if it is the same everywhere.

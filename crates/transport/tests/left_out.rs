@@ -4,7 +4,8 @@
 use etalon_optics::colour::colour_matching;
 use etalon_optics::{RefractiveIndex, Spectrum};
 use etalon_scene::{
-    Image, ImageTexture, MaterialKind, NumberTexture, ParameterMut, Scene, SpectrumTexture, Texels, TextureFilter,
+    AlbedoGrid, Image, ImageTexture, MaterialKind, NumberTexture, ParameterMut, Scene, SpectrumTexture, Texels,
+    TextureFilter, Wrap,
 };
 use etalon_transport::plan::LaneModel;
 use etalon_transport::{EffectName, Study, prepare};
@@ -333,4 +334,40 @@ fn whatever_scatters_is_lit_by_lights_without_a_surface() {
         });
         assert!(mean_y(&render(&parse(&scene.to_string()), &Study::default())) > 0.0, "{material}");
     }
+}
+
+/// Where a grid says how much of what a medium takes is scattered: without absorption all of it is, without scattering the rest of the mean is
+/// absorbed, and without wavelengths colours are grey.
+#[test]
+fn grids_of_albedos_are_left_out_with_what_they_stand_for() {
+    let mut json = room();
+    json["medium"] = json!({"extinction_per_m": 0.4, "albedo": 1});
+    let bare = parse(&json.to_string());
+    let with = |values: [f32; 6]| {
+        let mut scene = bare.clone();
+        let transform = scene.objects[0].transform.clone();
+        let (box_m, cells) = ([[-2.0, 0.0, -2.0], [2.0, 2.0, 2.0]], [1, 2, 1]);
+        let grid = AlbedoGrid { cells, channels: 3, values: values.into(), box_m, transform, wrap: Wrap::Clamp };
+        scene.medium.as_mut().expect("it has one").albedo = Some(grid);
+        scene
+    };
+    let grey = with([0.25, 0.25, 0.25, 0.75, 0.75, 0.75]);
+    same(EffectName::Absorption, &without_glass_absorption(&grey), &without_glass_absorption(&bare));
+    // White leaves nothing to be absorbed, and rounding must not make it less than nothing.
+    let white = render(&with([1.0; 6]), &without(EffectName::Scattering));
+    json["medium"] = json!({"extinction_per_m": 0, "albedo": 1});
+    let clear = render(&parse(&json.to_string()), &Study::default());
+    assert!((mean_y(&white) / mean_y(&clear) - 1.0).abs() < 1e-9);
+    // Half of it in the mean.
+    let half = render(&grey, &without(EffectName::Scattering));
+    json["medium"] = json!({"absorption_per_m": 0.2});
+    let absorbing = render(&parse(&json.to_string()), &Study::default());
+    assert!((mean_y(&half) / mean_y(&absorbing) - 1.0).abs() < 1e-9);
+}
+
+/// The same, with glass that does not absorb.
+fn without_glass_absorption(scene: &Scene) -> Scene {
+    let mut scene = scene.clone();
+    scene.materials.iter_mut().for_each(|material| material.medium = None);
+    scene
 }

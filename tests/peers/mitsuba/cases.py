@@ -81,7 +81,7 @@ CASES = [
     of("glass", kind="dielectric"),
     of("glass", kind="thindielectric", samples=3),
     of("named-glass"),
-    *(of("rough-glass", distribution=d, alpha=0.3) for d in ("ggx", "beckmann")),
+    *(of("rough-glass", distribution=d, alpha=a) for d, a in (("ggx", 0.3), ("beckmann", 0.3), ("ggx", 0.98))),
     of("tinted-glass", samples=3, kind="dielectric"),
     of("tinted-glass", PANE, samples=3, kind="thindielectric"),
     of("tinted-rough-glass"),

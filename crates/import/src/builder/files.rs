@@ -84,13 +84,16 @@ impl Builder<'_> {
     }
 
     /// Adds an image of the square roots of another's linear channels, in steps of 1/65535, once. It is linear.
-    pub(crate) fn root_of_image(&mut self, file: &str, encoding: Encoding) -> Option<String> {
-        let key = format!("the roots of {file}");
+    pub(crate) fn root_of_image(&mut self, file: &str, encoding: Encoding, place: &str) -> Option<String> {
+        let key = format!("the roots of {file}, {encoding:?}");
         if let Some(Some(known)) = self.known.get(&key) {
             return Some(known.clone());
         }
         let bytes = &self.files.iter().find(|known| known.name == file)?.bytes;
         let (image, _) = Image::decode(bytes, encoding).ok()?;
+        if image.linear_texels().flatten().any(|channel| channel > 1.0) {
+            self.approximate(place, "texels of the base colour of glass above 1 become 1");
+        }
         let steps = |channel: f64| (channel.clamp(0.0, 1.0).sqrt() * f64::from(u16::MAX)).round() as u16;
         let texels = image.linear_texels().flat_map(|texel| texel.map(steps)).collect();
         let roots = ImageBuffer::<Rgb<u16>, Vec<u16>>::from_raw(image.width, image.height, texels)?;

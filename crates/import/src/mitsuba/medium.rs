@@ -164,7 +164,12 @@ impl<'a> Walk<'a, '_, '_> {
         if shares(&mut bytes) {
             self.builder.approximate(place, "albedos above 1 become 1");
         }
-        self.placed_grid(volume, "albedo", bytes).map(Some)
+        let wrap = volume.string("wrap_mode").map(ToOwned::to_owned);
+        let mut grid = self.placed_grid(volume, "albedo", bytes)?;
+        if let Some(wrap @ ("repeat" | "mirror")) = wrap.as_deref() {
+            grid["wrap"] = json!(wrap);
+        }
+        Ok(Some(grid))
     }
 
     /// The file of a grid, and where it lies.

@@ -18,6 +18,54 @@ const SAMPLING_RATES: [&str; 4] = [
 ];
 /// The least width of facets there.
 const LEAST_ALPHA: f64 = 0.001;
+/// Where less than this share is opaque, it does not get the sheen and the coat of all: rare directions would bring much light.
+const LEAST_OPAQUE: f64 = 0.05;
+
+/// What a `principled` material says, but how much of it transmits and is metal.
+struct Lobes {
+    base: Value,
+    eta: f64,
+    rough: Rough,
+    specular_tint: f64,
+    flatness: f64,
+    sheen: f64,
+    sheen_tint: f64,
+    coat: f64,
+    coat_alpha: f64,
+}
+
+impl Lobes {
+    /// What is opaque, with this many times the sheen and the coat.
+    fn surface(&self, times: f64) -> Value {
+        let index = if self.eta > 0.0 && self.eta < 1.0 { 1.0 / self.eta } else { self.eta };
+        let mut surface = json!({ "type": "principled", "reflectance": self.base, "index": index, "sides": "front" });
+        self.rough.clone().put(&mut surface);
+        let lobes = [
+            ("specular_tint", self.specular_tint),
+            ("flatness", self.flatness),
+            ("sheen", times * self.sheen),
+            ("sheen_tint", self.sheen_tint),
+            ("clear_coat", times * self.coat),
+        ];
+        lobes.into_iter().filter(|(_, number)| *number > 0.0).for_each(|(key, number)| surface[key] = json!(number));
+        if self.coat > 0.0 {
+            surface["clear_coat_alpha"] = json!(self.coat_alpha);
+        }
+        surface
+    }
+
+    /// What transmits, each of whose faces passes `tint`.
+    fn glass(&self, tint: &Value) -> Value {
+        let mut glass = json!({
+            "type": "dielectric", "interior": self.eta, "exterior": 1, "multiple_scattering": "lost", "masking": "separable"
+        });
+        if *tint != json!(1.0) {
+            glass["transmitted_tint"] = tint.clone();
+        }
+        self.rough.clone().put(&mut glass);
+        glass
+    }
+}
 
 impl Walk<'_, '_, '_> {
     /// A sheet that reflects and passes light diffusely, by half of its `diff_trans`.
@@ -39,96 +87,84 @@ impl Walk<'_, '_, '_> {
     /// A principled surface; with glass, by the share `spec_trans` of what is no metal.
     pub(super) fn principled(&mut self, element: &Element) -> Result<Value, String> {
         let place = &element.place;
-        let base = self.colour(element, "base_color", Of::Texture)?.unwrap_or(json!(0.5));
-        let index = self.principled_index(element)?;
-        let rough = self.principled_roughness(element)?;
+        let lobes = self.principled_lobes(element)?;
         for name in SAMPLING_RATES {
             element.property(name);
         }
         let transmits = self.number(element, "spec_trans")?.unwrap_or(Number::Value(0.0));
         let metallic = self.number(element, "metallic")?.unwrap_or(Number::Value(0.0));
-        let mut share = |name: &str| -> Result<f64, String> {
-            let number = self.number(element, name)?;
-            Ok(number.map_or(0.0, |number| number.mean(name, place, self.builder)))
-        };
-        let (sheen, coat) = (share("sheen")?, share("clearcoat")?);
-        let specular_tint = share("spec_tint")?;
-        let alone =
-            [("specular_tint", specular_tint), ("flatness", share("flatness")?), ("sheen_tint", share("sheen_tint")?)];
-        let coat_alpha = 0.1 + (LEAST_ALPHA - 0.1) * share("clearcoat_gloss")?;
-        // What is opaque, with this many times the sheen and the coat.
-        let surface = |times: f64| {
-            let mut surface = json!({ "type": "principled", "reflectance": base, "index": index, "sides": "front" });
-            rough.clone().put(&mut surface);
-            let lobes = alone.into_iter().chain([("sheen", times * sheen), ("clear_coat", times * coat)]);
-            lobes.filter(|(_, number)| *number > 0.0).for_each(|(key, number)| surface[key] = json!(number));
-            if coat > 0.0 {
-                surface["clear_coat_alpha"] = json!(coat_alpha);
+        let mut opaque = lobes.surface(1.0);
+        if matches!(transmits, Number::Value(0.0)) || matches!(metallic, Number::Value(1.0)) {
+            match metallic {
+                Number::Value(0.0) => {}
+                Number::Value(share) => opaque["metallic"] = json!(share),
+                Number::Image(image, _) => opaque["metallic_image"] = image,
             }
-            surface
+            self.builder.spend(&opaque, place)?;
+            return Ok(opaque);
+        }
+        let rest = self.not_transmitting(&lobes, &transmits, place);
+        let tint = self.root_of_base(&lobes.base, place);
+        let metal = || {
+            let mut metal = opaque.clone();
+            metal["metallic"] = json!(1);
+            metal
         };
-        let mut opaque = surface(1.0);
-        let made = match transmits {
-            Number::Value(0.0) => {
-                match metallic {
-                    Number::Value(0.0) => {}
-                    Number::Value(share) => opaque["metallic"] = json!(share),
-                    Number::Image(image, _) => opaque["metallic_image"] = image,
-                }
-                opaque
-            }
-            transmits => {
-                if specular_tint > 0.0 {
-                    self.builder.leave_out(place, "what transmits reflects without \"spec_tint\"");
-                }
-                // There, neither the coat nor the sheen is less where light is transmitted, unless all of it is.
-                let rest = match &transmits {
-                    Number::Value(share) => 1.0 - share,
-                    Number::Image(_, mean) => 1.0 - mean,
-                };
-                let spread = matches!(transmits, Number::Image(..)) && (sheen > 0.0 || coat > 0.0);
-                if spread {
-                    self.builder.approximate(place, "sheen and clear coat lie on what does not transmit alone");
-                }
-                if rest <= 0.0 && coat > 0.0 {
-                    self.builder.leave_out(place, "\"clearcoat\" of glass is left out");
-                }
-                let tint = self.root_of_base(&base, place);
-                let glass = || {
-                    let mut glass = json!({
-                        "type": "dielectric", "interior": index, "exterior": 1, "multiple_scattering": "lost", "masking": "separable"
-                    });
-                    if tint != json!(1.0) {
-                        glass["transmitted_tint"] = tint.clone();
-                    }
-                    rough.clone().put(&mut glass);
-                    glass
-                };
-                let metal = || {
-                    let mut metal = opaque.clone();
-                    metal["metallic"] = json!(1);
-                    metal
-                };
-                mixed(mixed(surface(if rest > 0.0 { 1.0 / rest } else { 0.0 }), glass, transmits), metal, metallic)
-            }
-        };
+        let made = mixed(mixed(rest, || lobes.glass(&tint), transmits), metal, metallic);
         self.builder.spend(&made, place)?;
         Ok(made)
     }
 
-    /// The index that `eta` or `specular` says.
-    fn principled_index(&mut self, element: &Element) -> Result<f64, String> {
-        let index = match (element.number("eta")?, element.number("specular")?.unwrap_or(0.5)) {
+    /// What does not transmit. In Mitsuba neither the coat nor the sheen is less where light is transmitted: here what is opaque has more of them.
+    fn not_transmitting(&mut self, lobes: &Lobes, transmits: &Number, place: &str) -> Value {
+        if lobes.specular_tint > 0.0 {
+            self.builder.leave_out(place, "what transmits reflects without \"spec_tint\"");
+        }
+        let both = [("clearcoat", lobes.coat), ("sheen", lobes.sheen)];
+        let times = match transmits {
+            Number::Value(share) if 1.0 - share > LEAST_OPAQUE => 1.0 / (1.0 - share),
+            _ => {
+                for (name, _) in both.into_iter().filter(|(_, strength)| *strength > 0.0) {
+                    self.builder.leave_out(place, format!("\"{name}\" of what transmits is left out"));
+                }
+                1.0
+            }
+        };
+        lobes.surface(times)
+    }
+
+    /// All but what transmits, and how much of it is metal.
+    fn principled_lobes(&mut self, element: &Element) -> Result<Lobes, String> {
+        let place = &element.place;
+        let mut share = |name: &str, most: f64| -> Result<f64, String> {
+            // A texture is of shares.
+            let is_number =
+                element.property(name).is_some_and(|stated| stated.tag == "float" || stated.tag == "integer");
+            let of = if is_number { Of::Coefficient } else { Of::Reflectance };
+            let number = self.number_of(element, name, of)?;
+            let number = number.map_or(0.0, |number| number.mean(name, place, self.builder));
+            if number > most {
+                self.builder.approximate(place, format!("\"{name}\" of {number} becomes {most}"));
+            }
+            Ok(number.min(most))
+        };
+        let (sheen, coat) = (share("sheen", f64::INFINITY)?, share("clearcoat", f64::INFINITY)?);
+        let (specular_tint, flatness, sheen_tint) =
+            (share("spec_tint", 1.0)?, share("flatness", 1.0)?, share("sheen_tint", 1.0)?);
+        let coat_alpha = 0.1 + (LEAST_ALPHA - 0.1) * share("clearcoat_gloss", 1.0)?;
+        let base = self.colour(element, "base_color", Of::Texture)?.unwrap_or(json!(0.5));
+        let eta = match (element.number("eta")?, element.number("specular")?.unwrap_or(0.5)) {
             (Some(eta), _) => eta,
             // What reflects 0.08 times the number head-on.
             (None, specular) => 2.0 / (1.0 - (0.08 * specular.clamp(0.0, 1.0)).sqrt()) - 1.0,
         };
-        if index > 0.0 && index < 1.0 {
-            self.builder
-                .approximate(&element.place, "an \"eta\" below 1 becomes its reciprocal: it reflects as much head-on");
-            return Ok(1.0 / index);
+        if eta > 0.0 && eta < 1.0 {
+            let what =
+                "an \"eta\" below 1 becomes its reciprocal where nothing is transmitted: it reflects as much head-on";
+            self.builder.approximate(place, what);
         }
-        Ok(index)
+        let rough = self.principled_roughness(element)?;
+        Ok(Lobes { base, eta, rough, specular_tint, flatness, sheen, sheen_tint, coat, coat_alpha })
     }
 
     /// The square root of a base colour, which each face of glass passes.
@@ -137,7 +173,8 @@ impl Walk<'_, '_, '_> {
             return root;
         }
         let encoding = if base["encoding"] == "linear" { Encoding::Linear } else { Encoding::Auto };
-        let Some(file) = base["file"].as_str().and_then(|file| self.builder.root_of_image(file, encoding)) else {
+        let Some(file) = base["file"].as_str().and_then(|file| self.builder.root_of_image(file, encoding, place))
+        else {
             self.builder.approximate(place, "a base colour of glass that is no image becomes grey");
             return json!(0.5_f64.sqrt());
         };
@@ -156,6 +193,10 @@ impl Walk<'_, '_, '_> {
         Ok(match self.number(element, "roughness")?.unwrap_or(Number::Value(0.5)) {
             Number::Value(roughness) => {
                 let (alpha, aspect) = (roughness * roughness, (1.0 - 0.9 * anisotropic.clamp(0.0, 1.0)).sqrt());
+                if alpha / aspect > 1.0 {
+                    let what = format!("the width of facets along the grain, {:.3}, becomes 1", alpha / aspect);
+                    self.builder.approximate(&element.place, what);
+                }
                 Rough::widths([alpha / aspect, alpha * aspect].map(|alpha| alpha.clamp(LEAST_ALPHA, 1.0)))
             }
             Number::Image(image, _) => {

@@ -111,7 +111,7 @@ fn grids_of_colours_keep_their_density_and_their_mean_colour() {
     // All of it is scattered, but for what the grid says.
     assert_eq!(coefficients(medium, 650.0)[1], extinction(650.0));
     let grid = medium.albedo.as_ref().expect("a grid of albedos");
-    assert_eq!((grid.cells, &grid.colours[..]), ([1, 1, 2], &[[0.75, 0.375, 0.0], [0.375, 0.375, 0.0]][..]));
+    assert_eq!((grid.cells, &grid.values[..]), ([1, 1, 2], &[0.75, 0.375, 0.0, 0.375, 0.375, 0.0][..]));
     let plain = of(albedo).replace("heterogeneous", "homogeneous").replace(
         "gridvolume\"><string name=\"filename\" value=\"coloured.vol\"/></volume></medium>",
         "constvolume\"><float name=\"value\" value=\"1\"/></volume></medium>",

@@ -61,11 +61,20 @@ fn lobes_of_it_keep_their_strength() {
     assert!(said.is_empty(), "{said:?}");
     assert_eq!((&half["first"]["sheen"], &half["first"]["clear_coat"]), (&1.0.into(), &2.0.into()));
     let (_, said) = material(&(keys + &number("spec_trans", 1.0) + &number("spec_tint", 1.0)));
-    let expected =
-        ["line 1: what transmits reflects without \"spec_tint\"", "line 1: \"clearcoat\" of glass is left out"];
+    let expected = [
+        "line 1: what transmits reflects without \"spec_tint\"",
+        "line 1: \"clearcoat\" of what transmits is left out",
+        "line 1: \"sheen\" of what transmits is left out",
+    ];
     assert_eq!(said, expected);
+    let (metal, said) = material(&(number("sheen", 3.0) + &number("metallic", 1.0) + &number("spec_trans", 0.5)));
+    assert_eq!((&metal["type"], &metal["sheen"], said.len()), (&"principled".into(), &3.0.into(), 0), "{said:?}");
     let (turned, said) = material(&number("eta", 0.5));
     assert_eq!((&turned["index"], said.len()), (&2.0.into(), 1), "{said:?}");
+    let (bubble, _) = material(&(number("eta", 0.5) + &number("spec_trans", 1.0)));
+    assert_eq!(bubble["interior"], 0.5, "light bends the way that it says");
+    let (_, said) = material(&(number("roughness", 1.0) + &number("anisotropic", 1.0)));
+    assert_eq!(said, ["line 1: the width of facets along the grain, 3.162, becomes 1"]);
 }
 
 #[test]

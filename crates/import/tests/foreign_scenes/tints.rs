@@ -1,7 +1,7 @@
 //! What is left of the light of glass and metals.
 
 use etalon_optics::Spectrum;
-use etalon_scene::{MaterialKind, SpectrumTexture};
+use etalon_scene::{Encoding, Image, MaterialKind, SpectrumTexture};
 
 use super::{imported, on_its_side, said, scene};
 
@@ -52,4 +52,34 @@ fn principled_glass_passes_the_root_of_its_base_at_each_face() {
     assert!((tints(&kind)[1].powi(2) - whole).abs() < 1e-3);
     let (kind, _) = material(&glass("<float name=\"base_color\" value=\"1\"/>"));
     assert!(!matches!(kind, MaterialKind::Tinted { .. }));
+}
+
+/// Of an image it is an image of the roots, and the same file in two encodings has two.
+#[test]
+fn principled_glass_of_an_image_passes_the_roots_of_its_texels() {
+    let glass = |raw: bool| {
+        format!(
+            "<bsdf type=\"principled\"><float name=\"spec_trans\" value=\"1\"/><texture type=\"bitmap\" name=\"base_color\">\
+             <string name=\"filename\" value=\"chequers.png\"/><boolean name=\"raw\" value=\"{raw}\"/></texture></bsdf>"
+        )
+    };
+    let shape = |raw: bool| format!("<shape type=\"rectangle\">{}</shape>", glass(raw));
+    let imported = imported("xml", &format!("<scene version=\"3.0.0\">{}{}</scene>", shape(false), shape(true)));
+    assert_eq!(said(&imported), Vec::<String>::new());
+    let materials = scene(&imported).materials;
+    let images = [0, 1].map(|i| {
+        let MaterialKind::Tinted { transmitted: SpectrumTexture::Image(image), .. } = &materials[i].kind else {
+            panic!("{:?}", materials[i].kind)
+        };
+        image.image.clone()
+    });
+    for (image, encoding) in images.iter().zip([Encoding::Auto, Encoding::Linear]) {
+        let (base, _) = Image::decode(super::PNG, encoding).expect("an image");
+        assert_eq!((image.width, image.height), (base.width, base.height));
+        for (root, texel) in image.linear_texels().zip(base.linear_texels()) {
+            let off = [0, 1, 2].map(|c| (root[c] - texel[c].sqrt()).abs());
+            // Half of a step of 16 bits.
+            assert!(off.iter().all(|off| *off <= 0.51 / 65535.0), "{root:?} of {texel:?}");
+        }
+    }
 }

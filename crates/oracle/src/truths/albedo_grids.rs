@@ -13,7 +13,9 @@ use crate::quadrature::interval;
 use crate::transfer::HalfSpace;
 
 pub(super) fn truths() -> Vec<Truth> {
-    vec![beam(), turned(), lamp(), colour(), half_space()]
+    let mut list = vec![beam(), turned(), lamp(), colour(), half_space()];
+    list.extend(["repeat", "mirror"].map(beyond));
+    list
 }
 
 /// Extinction, 1/m, and the albedo that the grid is a factor on.
@@ -48,8 +50,9 @@ fn share(x: f64, y: f64, z: f64) -> f64 {
 /// ∫ σϖ/4π e^(−2σt) dt from the top down: light comes in and goes out straight.
 fn seen(share: impl Fn(f64) -> f64) -> f64 {
     let at = |z: f64| ALBEDO * share(z) * (-2.0 * PER_M * (1.0 - z)).exp();
-    let part = |from: f64, to: f64| interval(at, from, to, 1e-12).value;
-    PER_M / (4.0 * PI) * (part(0.0, 0.25) + part(0.25, 0.75) + part(0.75, 1.0))
+    // Between the places where a share has a kink.
+    let part = |k: u32| interval(at, f64::from(k) / 32.0, f64::from(k + 1) / 32.0, 1e-13).value;
+    PER_M / (4.0 * PI) * (0..32).map(part).sum::<f64>()
 }
 
 /// The same where the share is `a` up to a height of ¼, `b` from ¾ on, and linear between: e^(−2σt) integrated by parts.
@@ -96,17 +99,57 @@ fn turned() -> Truth {
     let value = seen(placed);
     Truth::new("beam-in-smoke-of-a-turned-grid", &lit, value, "∫ σϖ/4π e^(−2σt) dt, the grid turned, and half as high")
         .because(BECAUSE)
-        .confirmed("midpoints along the ray", 1e-8, move || {
-            let n = 400_000;
-            let at = |i: u32| (f64::from(i) + 0.5) / f64::from(n);
-            let of = |z: f64| ALBEDO * placed(z) * (-2.0 * PER_M * (1.0 - z)).exp();
-            PER_M / (4.0 * PI) * (0..n).map(|i| of(at(i))).sum::<f64>() / f64::from(n)
-        })
+        .confirmed("midpoints along the ray", 1e-8, move || seen_by_midpoints(placed))
         .or_else("not turned", seen(|z| share(x, y, 2.0 * z)))
         .or_else("as high as before", seen(|z| share(-x, -y, z)))
         .or_else("nothing above the grid", seen(|z| if z < 0.5 { placed(z) } else { 0.0 }))
         .sees(5e-3)
         .allows(1e-5 * value, "the picture is 0.1 mm wide; single precision 2e-5")
+}
+
+/// By midpoints.
+fn seen_by_midpoints(share: impl Fn(f64) -> f64) -> f64 {
+    let n = 400_000;
+    let at = |i: u32| (f64::from(i) + 0.5) / f64::from(n);
+    let of = |z: f64| ALBEDO * share(z) * (-2.0 * PER_M * (1.0 - z)).exp();
+    PER_M / (4.0 * PI) * (0..n).map(|i| of(at(i))).sum::<f64>() / f64::from(n)
+}
+
+/// A grid that is smaller than the smoke.
+fn beyond(wrap: &'static str) -> Truth {
+    let (across, upward) = (0.3, 0.25);
+    let grid = json!({ "file": "shares.vol", "wrap": wrap, "transform": [{ "scale": [across, across, upward] }] });
+    // Of two cells along each edge: how much of the second there is, if the box is there again and again, from its least corner in units of it.
+    let second = move |t: f64| {
+        let (turns, within) = (t.floor(), t - t.floor());
+        let mirrored = wrap == "mirror" && turns.rem_euclid(2.0) == 1.0;
+        let x = 2.0 * if mirrored { 1.0 - within } else { within } - 0.5;
+        match wrap {
+            "repeat" if x < 0.0 => -x,
+            "repeat" if x > 1.0 => 2.0 - x,
+            _ => x.clamp(0.0, 1.0),
+        }
+    };
+    let again = move |z: f64| {
+        let [x, y] = AT.map(|at| second(0.5 * (at / across + 1.0)));
+        // The middles lie at ±½ and at ¼ and ¾.
+        share(x - 0.5, y - 0.5, 0.25 + 0.5 * second(z / upward))
+    };
+    let lit = scene(grid).directional_light([0.0, 0.0, -1.0], 1.0);
+    let value = seen(again);
+    let [x, y] = AT.map(|at| at / across);
+    Truth::new(
+        format!("beam-in-smoke-of-a-grid-beyond-its-box-by-{wrap}"),
+        &lit,
+        value,
+        "∫ σϖ/4π e^(−2σt) dt, ϖ from box to box",
+    )
+    .because(BECAUSE)
+    .confirmed("midpoints along the ray", 1e-8, move || seen_by_midpoints(again))
+    .or_else("the nearest value beyond the box", seen(|z| share(x, y, z / upward)))
+    .or_else("nothing beyond the box", seen(|z| if z < upward { again(z) } else { 0.0 }))
+    .sees(5e-3)
+    .allows(1e-5 * value, "the picture is 0.1 mm wide; single precision 2e-5")
 }
 
 /// A point lamp beside the ray: places are chosen by where it shines.

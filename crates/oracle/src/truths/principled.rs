@@ -389,13 +389,14 @@ fn below_a_disk() -> Vec<Truth> {
 fn roughness_by_image() -> Vec<Truth> {
     let of = |name: &'static str, byte: u8, surface: Surface, value: f64, angles: [f64; 3], formula: &str| {
         let [o, i, apart] = angles;
+        let file = format!("width-{byte}.png");
         let mut material = surface.json();
         material.as_object_mut().expect("an object").remove("alpha");
-        material["roughness_image"] = json!({ "file": "width.png", "channel": "green", "quantity": "alpha" });
+        material["roughness_image"] = json!({ "file": file, "channel": "green", "quantity": "alpha" });
         let (to_viewer, to_light) = (direction(o, 20.0), direction(i, 20.0 + apart));
         Truth::new(
             name,
-            &lit(plate(to_viewer, &material), to_light).file("width.png", rgba_png(&[[0, byte, 255, 255]])),
+            &lit(plate(to_viewer, &material), to_light).file(&file, rgba_png(&[[0, byte, 255, 255]])),
             value,
             formula,
         )
@@ -431,15 +432,22 @@ fn from_behind() -> Vec<Truth> {
     let (o, i) = (direction(60.0, 20.0), direction(45.0, 160.0));
     let below = |[x, y, z]: Vec3| [x, y, -z];
     let value = ALL.f_cos(o, i);
-    let mut one_sided = ALL.json();
-    one_sided["sides"] = json!("front");
-    vec![
-        Truth::new("principled-from-behind", &lit(plate(below(o), &ALL.json()), below(i)), value, "f cos θ_i")
+    let on = |sides: &str| {
+        let mut material = ALL.json();
+        material["sides"] = json!(sides);
+        lit(plate(below(o), &material), below(i))
+    };
+    let shows = |name: &str, scene: &Scene| {
+        Truth::new(name, scene, value, "f cos θ_i")
             .because("The back is the mirror image of the front in the plane of the surface.")
             .confirmed("spherical triangles", 1e-9, || ALL.by_angles(60.0, 45.0, 140.0))
             .or_else("black", 0.0)
-            .sees(2e-3),
-        Truth::new("principled-front-from-behind", &lit(plate(below(o), &one_sided), below(i)), 0.0, "0")
+            .sees(2e-3)
+    };
+    vec![
+        shows("principled-from-behind", &lit(plate(below(o), &ALL.json()), below(i))),
+        shows("principled-back-from-behind", &on("back")),
+        Truth::new("principled-front-from-behind", &on("front"), 0.0, "0")
             .because("Its back is black, as the scene says.")
             .or_else("as bright as the front", value),
     ]

@@ -14,6 +14,7 @@ use crate::json::{Code, Direction, List, NonNegative, Optional, Positive, Reader
 use crate::model::{
     AlbedoGrid, DensityGrid, ExponentialDensity, Medium, MediumDensity, PhaseFunction, PhaseMatrix, PhaseTable,
 };
+use crate::texture::Wrap;
 
 crate::record! {
     /// What fills a space, and what it does to light on its way.
@@ -152,12 +153,14 @@ crate::record! {
 }
 
 crate::record! {
-    /// Shares or colours of a grid, in trilinear proportion between the middles of its cells, and the same from the outermost middles on.
+    /// Shares or colours of a grid, in trilinear proportion between the middles of its cells.
     pub(crate) struct AlbedoGridForm + comment {
         /// A .vol file of one channel or of three (linear red, green and blue), relative to this file's folder.
         file: Required<Spanned<String>>,
         /// From the coordinates of the file's box to the world: steps, the first of which is applied first.
         transform: Required<Spanned<List<Box<Step>>>> = "[]",
+        /// What holds beyond the box: the nearest value ("clamp"), or the box again ("repeat", "mirror").
+        wrap: Required<Wrap> = r#""clamp""#,
     }
 }
 
@@ -269,12 +272,8 @@ fn albedo_grid(form: &AlbedoGridForm, files: &mut Files, reader: &mut Reader<'_>
         reader.error(Code::OutOfRange, name.at, message);
         return None;
     }
-    let colour = |numbers: &[f32]| match *numbers {
-        [red, green, blue] => [red, green, blue],
-        _ => [numbers[0]; 3],
-    };
-    let colours = grid.values.chunks_exact(grid.channels).map(colour).collect();
-    Some(AlbedoGrid { cells: grid.cells, colours, box_m: grid.box_m, transform })
+    let Grid { cells, channels, values, box_m } = grid;
+    Some(AlbedoGrid { cells, channels, values, box_m, transform, wrap: form.wrap? })
 }
 
 fn phase(form: &PhaseForm, reader: &mut Reader<'_>) -> Option<PhaseFunction> {

@@ -129,11 +129,7 @@ pub const NEIGHBOURS: &[Neighbour] = &[
     row(Keyword, "roughdielectric", Word("dielectric", "its \"alpha\" makes it rough")),
     word("coateddiffuse substrate", "plastic"),
     row(Keyword, "roughplastic", Word("plastic", "its \"alpha\" makes it rough")),
-    row(
-        Keyword,
-        "principled principledbsdf bsdfprincipled disney uber standardsurface openpbr pbrmetallicroughness",
-        OneOf(&["plastic", "conductor", "dielectric"]),
-    ),
+    word("principledbsdf bsdfprincipled disney uber standardsurface openpbr pbrmetallicroughness", "principled"),
     word("mix mixbsdf mixshader blendbsdf mixture", "blend"),
     row(
         Keyword,

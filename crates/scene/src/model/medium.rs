@@ -1,6 +1,7 @@
 //! Media: what fills a space, and what it does to light on its way.
 
 use super::Transform;
+use crate::texture::{TextureFilter, Wrap, place};
 use etalon_optics::Spectrum;
 use std::sync::Arc;
 
@@ -59,32 +60,67 @@ pub struct DensityGrid {
     pub transform: Transform,
 }
 
-/// Colours at the middles of the cells of a box, in trilinear proportion between them; from the outermost middles on everything is the same.
+/// Colours at the middles of the cells of a box, in trilinear proportion between them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AlbedoGrid {
     /// Cells along x, y and z; at least one each.
     pub cells: [u32; 3],
-    /// Their linear red, green and blue, each in [0, 1]; x runs first, then y.
-    pub colours: Arc<[[f32; 3]]>,
+    /// Numbers in each: 1 of shares, 3 of linear red, green and blue.
+    pub channels: usize,
+    /// The numbers, each in [0, 1]; channels run first, then x, then y.
+    pub values: Arc<[f32]>,
     /// Corners of the box in its own coordinates, m.
     pub box_m: [[f64; 3]; 2],
     /// From these to the world.
     pub transform: Transform,
+    /// What holds beyond the box.
+    pub wrap: Wrap,
 }
 
 impl AlbedoGrid {
+    /// The colour at a place, in coordinates in which the box reaches from 0 to 1.
+    pub fn eval(&self, at: [f64; 3]) -> [f64; 3] {
+        let along = [0, 1, 2].map(|k| place(at[k], self.cells[k] as usize, self.wrap, TextureFilter::Bilinear));
+        let [columns, rows, _] = self.cells.map(|count| count as usize);
+        let mut sum = [0.0; 3];
+        for corner in 0..8 {
+            let mut weight = 1.0;
+            let [x, y, z] = [0, 1, 2].map(|k| {
+                let (before, after, share) = along[k];
+                let is_after = corner >> k & 1 == 1;
+                weight *= if is_after { share } else { 1.0 - share };
+                if is_after { after } else { before }
+            });
+            let cell = (z * rows + y) * columns + x;
+            (0..3).for_each(|c| sum[c] += weight * self.channel(cell, c));
+        }
+        sum
+    }
+
     /// Whether all colours are grey.
     pub fn is_grey(&self) -> bool {
-        self.colours.iter().all(|[r, g, b]| r == g && g == b)
+        self.channels == 1 || self.values.chunks_exact(3).all(|rgb| rgb[0] == rgb[1] && rgb[1] == rgb[2])
+    }
+
+    /// Red, green or blue of a cell.
+    fn channel(&self, cell: usize, c: usize) -> f64 {
+        f64::from(self.values[if self.channels == 1 { cell } else { 3 * cell + c }])
     }
 
     /// The mean of the cells.
     pub fn mean(&self) -> [f64; 3] {
-        let sum = self
-            .colours
-            .iter()
-            .fold([0.0; 3], |sum: [f64; 3], colour| [0, 1, 2].map(|c| sum[c] + f64::from(colour[c])));
-        sum.map(|channel| channel / self.colours.len() as f64)
+        let cells = self.values.len() / self.channels;
+        [0, 1, 2].map(|c| (0..cells).map(|cell| self.channel(cell, c)).sum::<f64>() / cells as f64)
+    }
+
+    /// Makes each cell grey, of this value of its colour.
+    pub fn turn_grey(&mut self, value: impl Fn([f64; 3]) -> f64) {
+        if self.channels == 3 {
+            let cells = self.values.len() / 3;
+            let grey = |cell: usize| value([0, 1, 2].map(|c| self.channel(cell, c))) as f32;
+            self.values = (0..cells).map(grey).collect();
+            self.channels = 1;
+        }
     }
 }
 

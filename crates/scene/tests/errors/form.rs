@@ -379,8 +379,12 @@ fn words_of_other_programs() {
         "\"dielectric\"",
         materials("{\"m\": {\"type\": «\"glass\"», \"interior\": 1.5}}"),
     );
-    let several = "use \"plastic\", \"conductor\" or \"dielectric\"";
-    hinted(word, "$.materials.m.type", several, materials("{\"m\": {\"type\": «\"principled\"»}}"));
+    hinted(
+        word,
+        "$.materials.m.type",
+        "\"principled\"",
+        materials("{\"m\": {\"type\": «\"disney\"», \"reflectance\": 0.5}}"),
+    );
     let rectangle = "{\"type\": «\"rectangle\"», \"origin_m\": [0,0,0], \"u_m\": [1,0,0], \"v_m\": [0,1,0]}";
     hinted(word, "$.objects[0].shape.type", "\"parallelogram\"", objects(&shaped(rectangle, "[]")));
     let mesh = "{\"type\": «\"obj\"», \"vertices_m\": [[0,0,0],[1,0,0],[0,1,0]], \"triangles\": [[0,1,2]]}";

@@ -219,7 +219,6 @@ impl Bsdf {
             }
             MaterialKind::Measured { surface } => Self::Measured(Measured::new(surface)),
             MaterialKind::Principled { reflectance, index, facets, lobes } => {
-                let reflectance = PathTexture::new(reflectance, range_nm);
                 Self::Principled(Principled::new(reflectance, index.clone(), facets, *lobes, range_nm))
             }
             MaterialKind::Blend { parts, by } => {

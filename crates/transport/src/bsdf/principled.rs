@@ -15,8 +15,7 @@
 //!
 //! # Limits
 //!
-//! f is reciprocal. It conserves energy in no strict sense: the lobes are added, not layered, so a white rough base with sheen gives back more
-//! than it gets at grazing angles. Light that meets several facets is lost. The surface depolarises.
+//! f is reciprocal. It does not conserve energy: the lobes are added, not layered, so a white base gives back more than it gets. Light that meets several facets is lost. The surface depolarises.
 //!
 //! # Source
 //!
@@ -28,8 +27,9 @@ use super::microfacet::{Distribution, Facing};
 use super::{BsdfSample, Properties, Shading};
 use crate::texture::{PathTexture, TexturePoint};
 use crate::warp::cosine_hemisphere;
-use etalon_optics::{Lanes, RefractiveIndex, Vec3, fresnel};
-use etalon_scene::{Microfacets, PrincipledLobes};
+use etalon_optics::colour::rec709_luminance;
+use etalon_optics::{Illuminant, Lanes, RefractiveIndex, Vec3, fresnel};
+use etalon_scene::{Microfacets, PrincipledLobes, SpectrumTexture};
 use std::f64::consts::FRAC_1_PI;
 
 /// A principled surface, alike on both sides.
@@ -48,7 +48,7 @@ pub struct Principled {
     reference: f64,
     /// The mean of the reflectance over wavelengths, and over an image.
     mean: f64,
-    /// Y, if it is needed and the same everywhere.
+    /// Y, if it is the same everywhere.
     luminance: Option<f64>,
 }
 
@@ -62,7 +62,7 @@ struct Shares {
 impl Principled {
     /// A base of albedo `reflectance` whose surface has an index of at least 1.
     pub fn new(
-        reflectance: PathTexture,
+        reflectance: &SpectrumTexture,
         index: RefractiveIndex,
         facets: &Microfacets,
         lobes: PrincipledLobes,
@@ -71,10 +71,15 @@ impl Principled {
         let [first, last] = range_nm;
         let steps = (0..=64).map(|i| first + (last - first) * f64::from(i) / 64.0);
         let [along, across] = facets.alpha;
+        // Of the spectrum itself, at wavelengths that are not rendered, too.
+        let luminance = match reflectance {
+            SpectrumTexture::Uniform(spectrum) => Some(Illuminant::D65.xyz_of_reflectance(|nm| spectrum.eval(nm))[1]),
+            SpectrumTexture::Image(_) | SpectrumTexture::VertexColours { .. } => None,
+        };
+        let reflectance = PathTexture::new(reflectance, range_nm);
         Self {
             mean: steps.map(|nm| reflectance.mean(nm)).sum::<f64>() / 65.0,
-            luminance: (lobes.has_tints() && reflectance.uniform().is_some())
-                .then(|| reflectance.luminance(TexturePoint::of_uv([0.0; 2]))),
+            luminance,
             dispersive: index.is_dispersive(),
             reference: index.eval(0.5 * (first + last)),
             roughness: (along * across).sqrt().sqrt(),
@@ -103,12 +108,16 @@ impl Principled {
         let specular = dielectric * (untinted + tinted) + metal * schlick(self.mean, v);
         let coat = lobes.clear_coat * schlick(COAT_HEAD_ON, v) * mu;
         let all = diffuse + specular + coat;
+        if all == 0.0 {
+            // It reflects nothing, or next to nothing.
+            return Shares { diffuse: 1.0, specular: 0.0, coat: 0.0 };
+        }
         Shares { diffuse: diffuse / all, specular: specular / all, coat: coat / all }
     }
 
     /// ρ/Y at a place, 1 where Y is 0.
     fn tint<const N: usize>(&self, base: Lanes<f64, N>, at: TexturePoint) -> Lanes<f64, N> {
-        let y = self.luminance.unwrap_or_else(|| self.reflectance.luminance(at));
+        let y = self.luminance.or_else(|| self.reflectance.colour(at).map(rec709_luminance)).unwrap_or(0.0);
         if y > 0.0 { base / y } else { Lanes::ONE }
     }
 

@@ -137,8 +137,7 @@ fn leave_out(effect: EffectName, scene: &mut Scene) {
             for medium in media_mut(scene) {
                 let Medium { absorption, scattering, source, albedo, .. } = medium;
                 if let Some(grid) = albedo {
-                    let grey = |colour: &[f32; 3]| [rec709_luminance(colour.map(f64::from)) as f32; 3];
-                    grid.colours = grid.colours.iter().map(grey).collect();
+                    grid.turn_grey(rec709_luminance);
                 }
                 for spectrum in [absorption, scattering].into_iter().chain(source) {
                     *spectrum = grey(spectrum, range_nm);
@@ -195,11 +194,11 @@ fn leave_out(effect: EffectName, scene: &mut Scene) {
             medium.albedo = None;
         }),
         EffectName::Scattering => media_mut(scene).for_each(|medium| {
-            // What a grid leaves to be absorbed is, by its mean.
+            // What a grid leaves to be absorbed is, by its mean; rounding may make a little more than 1 of white.
             if let Some(grid) = medium.albedo.take() {
                 let basis = RgbBasis::get();
                 let (mean, nm) = (grid.mean(), whole_nm(range_nm).collect::<Vec<_>>());
-                let rest = |nm: f64| medium.scattering.eval(nm) * (1.0 - basis.reflectance(mean, nm));
+                let rest = |nm: f64| medium.scattering.eval(nm) * (1.0 - basis.reflectance(mean, nm)).max(0.0);
                 let values = nm.iter().map(|&nm| medium.absorption.eval(nm) + rest(nm)).collect();
                 medium.absorption = Spectrum::tabulated(nm, values, Outside::Hold).expect("sums of what is valid");
             }

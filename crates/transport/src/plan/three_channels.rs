@@ -32,6 +32,10 @@ pub(super) fn check(scene: &Scene) -> Result<(), StudyError> {
     if evidence::of(EffectName::Fluorescence, scene).is_ok() {
         return refused("surfaces fluoresce, which three channels do not follow");
     }
+    let tinted = |kind: &MaterialKind| matches!(kind, MaterialKind::Principled { lobes, .. } if lobes.has_tints());
+    if scene.materials.iter().any(|material| material.kind.parts().into_iter().any(tinted)) {
+        return refused("lobes have the colour of a base over its luminance, which three channels do not know");
+    }
     if scene.film.bands.is_some() {
         return refused("bands hold wavelengths, which three channels do not have");
     }

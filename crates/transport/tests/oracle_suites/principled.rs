@@ -1,5 +1,6 @@
 //! Principled surfaces, held to every law. They conserve energy where their base is not white and there is little sheen.
 
+use etalon_optics::spectrum::Outside;
 use etalon_optics::{RefractiveIndex, Spectrum};
 use etalon_oracle::{laws, scatters_suite};
 use etalon_scene::{FacetMasking, MaterialKind, Microfacets, PrincipledLobes, Side};
@@ -8,9 +9,13 @@ use super::material::Material;
 
 /// α along u and across it.
 fn surface(base: f64, alpha: [f64; 2], lobes: PrincipledLobes) -> MaterialKind {
+    of(Spectrum::Constant(base), 1.5, alpha, lobes)
+}
+
+fn of(base: Spectrum, index: f64, alpha: [f64; 2], lobes: PrincipledLobes) -> MaterialKind {
     MaterialKind::Principled {
-        reflectance: Spectrum::Constant(base).into(),
-        index: RefractiveIndex::Constant(1.5),
+        reflectance: base.into(),
+        index: RefractiveIndex::Constant(index),
         facets: Microfacets { masking: FacetMasking::Separable, ..Microfacets::ggx(alpha, 0.4) },
         lobes: PrincipledLobes { clear_coat_alpha: 0.1, ..lobes },
     }
@@ -30,7 +35,10 @@ fn all_lobes() -> MaterialKind {
         clear_coat: 0.8,
         ..PrincipledLobes::default()
     };
-    surface(0.3, [0.3; 2], lobes)
+    // Its luminance is that of wavelengths beyond the rendered ones, too.
+    let base =
+        Spectrum::tabulated(vec![400.0, 600.0, 700.0], vec![0.2, 0.35, 0.3], Outside::Hold).expect("it is right");
+    of(base, 1.5, [0.3; 2], lobes)
 }
 
 fn brushed() -> Material {
@@ -52,6 +60,15 @@ fn with_clay() -> Material {
     Material::new(MaterialKind::blend(all_lobes(), clay, 0.5))
 }
 
+/// Half of it reflects nothing at all.
+fn half_of_nothing() -> Material {
+    let part = |metallic: f64| {
+        of(Spectrum::Constant(0.0), 1.0, [0.3; 2], PrincipledLobes { metallic, ..PrincipledLobes::default() })
+    };
+    Material::new(MaterialKind::blend(part(0.0), part(1.0), 0.5))
+}
+
+scatters_suite!(half_of_nothing, half_of_nothing());
 scatters_suite!(plain, plain());
 scatters_suite!(all_lobes, Material::new(all_lobes()));
 scatters_suite!(brushed, brushed());

@@ -27,12 +27,14 @@ fn coefficient(symbol: &str, spectrum: &Spectrum, range_nm: [f64; 2]) -> String 
 
 /// What absorbs.
 pub(super) fn absorption(scene: &Scene) -> Option<String> {
-    first_medium(scene, |medium, range_nm| match &medium.albedo {
-        Some(grid) if medium.absorbs() && medium.absorption.is_zero() => {
-            let [r, g, b] = grid.mean().map(|channel| 1.0 - channel);
-            Some(format!("by a grid of albedos, {r:.3}, {g:.3} and {b:.3} of extinction in the mean"))
-        }
-        _ => medium.absorbs().then(|| coefficient("σ", &medium.absorption, range_nm)),
+    first_medium(scene, |medium, range_nm| {
+        let everywhere = || coefficient("σ", &medium.absorption, range_nm);
+        let Some(grid) = medium.albedo.as_ref().filter(|_| medium.scatters()) else {
+            return medium.absorbs().then(everywhere);
+        };
+        let [r, g, b] = grid.mean().map(|channel| 1.0 - channel);
+        let by_grid = format!("a grid takes {r:.3}, {g:.3} and {b:.3} of what is scattered in the mean");
+        Some(if medium.absorption.is_zero() { by_grid } else { format!("{}; {by_grid}", everywhere()) })
     })
 }
 
