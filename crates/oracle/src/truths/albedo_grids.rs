@@ -34,9 +34,14 @@ fn scene(grid: Value) -> Scene {
     let [x, y] = AT;
     Scene::orthographic([x, y, 2.0], [x, y, 0.0], 1e-4)
         .thing(json!({ "shape": block([-50.0, -50.0, 0.0], [50.0, 50.0, 1.0]), "material": boundary(&smoke) }))
-        .file("shares.vol", vol([2, 2, 2], BOX_M, &CELLS))
         .depth(2)
         .spp(256)
+}
+
+/// The same of the eight cells, placed.
+fn cells(mut grid: Value) -> Scene {
+    grid["file"] = json!("shares.vol");
+    scene(grid).file("shares.vol", vol([2, 2, 2], BOX_M, &CELLS))
 }
 
 /// The share at a height of the eye's ray: trilinear between the middles, and the same from the outermost ones on.
@@ -70,7 +75,7 @@ fn beam() -> Truth {
     let [x, y] = AT;
     let [a, b] = [0.25, 0.75].map(|z| share(x, y, z));
     let value = by_parts(a, b);
-    let lit = scene(json!({ "file": "shares.vol" })).directional_light([0.0, 0.0, -1.0], 1.0);
+    let lit = cells(json!({})).directional_light([0.0, 0.0, -1.0], 1.0);
     Truth::new(
         "beam-in-smoke-of-a-grid-of-albedos",
         &lit,
@@ -91,11 +96,11 @@ fn beam() -> Truth {
 /// The grid turned by half a turn about an upright axis, and a third as high: above it lies what its top has.
 fn turned() -> Truth {
     let [x, y] = AT;
-    let grid = json!({ "file": "shares.vol", "transform": [
+    let grid = json!({ "transform": [
         { "rotate": { "axis": [0, 0, 1], "angle_deg": 180 } }, { "scale": [1, 1, 0.5] }
     ] });
     let placed = move |z: f64| share(-x, -y, 2.0 * z);
-    let lit = scene(grid).directional_light([0.0, 0.0, -1.0], 1.0);
+    let lit = cells(grid).directional_light([0.0, 0.0, -1.0], 1.0);
     let value = seen(placed);
     Truth::new("beam-in-smoke-of-a-turned-grid", &lit, value, "∫ σϖ/4π e^(−2σt) dt, the grid turned, and half as high")
         .because(BECAUSE)
@@ -118,7 +123,7 @@ fn seen_by_midpoints(share: impl Fn(f64) -> f64) -> f64 {
 /// A grid that is smaller than the smoke.
 fn beyond(wrap: &'static str) -> Truth {
     let (across, upward) = (0.3, 0.25);
-    let grid = json!({ "file": "shares.vol", "wrap": wrap, "transform": [{ "scale": [across, across, upward] }] });
+    let grid = json!({ "wrap": wrap, "transform": [{ "scale": [across, across, upward] }] });
     // Of two cells along each edge: how much of the second there is, if the box is there again and again, from its least corner in units of it.
     let second = move |t: f64| {
         let (turns, within) = (t.floor(), t - t.floor());
@@ -135,7 +140,7 @@ fn beyond(wrap: &'static str) -> Truth {
         // The middles lie at ±½ and at ¼ and ¾.
         share(x - 0.5, y - 0.5, 0.25 + 0.5 * second(z / upward))
     };
-    let lit = scene(grid).directional_light([0.0, 0.0, -1.0], 1.0);
+    let lit = cells(grid).directional_light([0.0, 0.0, -1.0], 1.0);
     let value = seen(again);
     let [x, y] = AT.map(|at| at / across);
     Truth::new(
@@ -166,7 +171,7 @@ fn lamp() -> Truth {
         ALBEDO * PER_M / (4.0 * PI * h) * (part(0.0, 0.25) + part(0.25, 0.75) + part(0.75, 1.0))
     };
     let value = seen(&|z| share(x, y, z));
-    let lit = scene(json!({ "file": "shares.vol" })).point_light([x + h, y, height], 1.0);
+    let lit = cells(json!({})).point_light([x + h, y, height], 1.0);
     Truth::new("lamp-in-smoke-of-a-grid-of-albedos", &lit, value, "∫ σϖ/4π I/d² e^(−σ(s + d)) ds")
         .because(BECAUSE)
         .confirmed("midpoints along the ray", 1e-7, move || {

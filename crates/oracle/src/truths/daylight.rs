@@ -167,14 +167,16 @@ impl Daylight {
 
     /// ∫ L cos θ over the upper half of the sky, on a plane of this normal.
     fn irradiance(normal: Vec3, radiance: impl Fn(Vec3) -> f64) -> f64 {
+        // In units of the zenith's, since tolerances are absolute.
+        let unit = radiance([0.0, 0.0, 1.0]);
         let over = |sin: f64, turns: f64| {
             // Over the square of the sine of the elevation: b/cos Z is steep at the horizon.
             let height = sin * sin;
             let level = (1.0 - height * height).sqrt();
             let toward = [level * (TAU * turns).cos(), level * (TAU * turns).sin(), height];
-            2.0 * sin * TAU * radiance(toward) * dot(toward, normal).max(0.0)
+            2.0 * sin * TAU * radiance(toward) / unit * dot(toward, normal).max(0.0)
         };
-        rectangle(over, [0.0, 1.0], [0.0, 1.0], 2e-5, 400_000).value
+        unit * rectangle(over, [0.0, 1.0], [0.0, 1.0], 2e-5, 400_000).value
     }
 
     /// The same by midpoints over both angles.

@@ -66,17 +66,25 @@ impl Sky {
     /// Irradiance on a plane of this unit normal from the sky alone, for a zenith of radiance 1, to about 2e-5.
     pub(super) fn irradiance(&self, normal: Vec3) -> f64 {
         let (across, middle) = (normal[0].hypot(normal[1]), normal[1].atan2(normal[0]));
-        let over = |sin: f64, share: f64| {
+        // Around the sun radiance has a kink: it comes to lie in the corner of each part.
+        let from_middle = (self.sun[1].atan2(self.sun[0]) - middle + 3.0 * PI).rem_euclid(TAU) - PI;
+        let over = |sin: f64, share: f64, side: f64| {
             // Over the sine of the elevation, in which solid angle is even; its square, since b/cos Z is steep at the horizon.
             let height = sin * sin;
             let level = (1.0 - height * height).sqrt();
             // Up to the azimuths at which the plane ends.
             let half = if across > 0.0 { (-height * normal[2] / (level * across)).clamp(-1.0, 1.0).acos() } else { PI };
-            let azimuth = middle + half * share;
+            let sun = from_middle.clamp(-half, half);
+            let reach = side * half - sun;
+            let azimuth = middle + sun + reach * share;
             let toward = [level * azimuth.cos(), level * azimuth.sin(), height];
-            2.0 * sin * half * self.relative(toward) * dot(toward, normal).max(0.0)
+            2.0 * sin * reach.abs() * self.relative(toward) * dot(toward, normal).max(0.0)
         };
-        rectangle(over, [0.0, 1.0], [-1.0, 1.0], 2e-5, 400_000).value
+        let sun = self.sun[2].clamp(0.0, 1.0).sqrt();
+        let part = |heights: [f64; 2], side: f64| {
+            rectangle(|sin, share| over(sin, share, side), heights, [0.0, 1.0], 5e-6, 100_000).value
+        };
+        [[0.0, sun], [sun, 1.0]].into_iter().map(|heights| part(heights, -1.0) + part(heights, 1.0)).sum()
     }
 
     /// The same by midpoints over the angles.

@@ -47,6 +47,8 @@ fn materials_and_spectra() {
             "slope",
             "stained",
             "bronzed",
+            "car",
+            "pot",
             "objects[4].material"
         ]
     );
@@ -185,6 +187,32 @@ fn materials_and_spectra() {
     let silver = MaterialKind::Conductor { metal: Metal::Index(ComplexIndex::named("Ag").unwrap()), film: None };
     let bronzed = MaterialKind::OneSided { kind: Box::new(tinted(silver, [0.5, 1.0])), side: Side::Front };
     assert_eq!(kind(&scene, "bronzed"), &bronzed);
+    let facets = |alpha: [f64; 2], rotation_rad: f64| Microfacets {
+        masking: FacetMasking::Separable,
+        ..Microfacets::ggx(alpha, rotation_rad)
+    };
+    let car = MaterialKind::Principled {
+        reflectance: Spectrum::rgb_reflectance([0.8, 0.1, 0.1]).expect("right").into(),
+        index: RefractiveIndex::Constant(1.5),
+        facets: facets([0.25; 2], 0.0),
+        lobes: PrincipledLobes {
+            metallic: 0.5,
+            specular_tint: 0.25,
+            flatness: 0.125,
+            sheen: 0.5,
+            sheen_tint: 0.75,
+            clear_coat: 1.0,
+            clear_coat_alpha: 0.0625,
+        },
+    };
+    assert_eq!(kind(&scene, "car"), &MaterialKind::OneSided { kind: Box::new(car), side: Side::Front });
+    let pot = MaterialKind::Principled {
+        reflectance: Spectrum::Constant(0.5).into(),
+        index: RefractiveIndex::Constant(1.5),
+        facets: facets([0.25, 0.5], 45.0_f64.to_radians()),
+        lobes: PrincipledLobes { clear_coat_alpha: 0.1, ..PrincipledLobes::default() },
+    };
+    assert_eq!(kind(&scene, "pot"), &pot);
     assert_eq!(kind(&scene, "pane"), &MaterialKind::ThinDielectric { index: glass("N-BK7"), film: None });
     let sheet = PolarisingSheet::Polariser { transmittance: Spectrum::Constant(0.75), extinction: 0.125 };
     assert_eq!(kind(&scene, "film"), &MaterialKind::PolarisingSheet { axis: [0.0, 1.0, 0.0], sheet });

@@ -157,8 +157,10 @@ fn every_key_of_the_schema_has_a_description_and_is_exercised() {
     let of_detail = [
         "bitangent",
         "bump_map",
+        "albedo_grid",
         "channel",
         "cutoff",
+        "metallic_image",
         "normal_map",
         "opacity_image",
         "quantity",
