@@ -6,6 +6,7 @@ mod fluorescent;
 mod grating;
 mod index;
 mod measured;
+mod plastic;
 mod principled;
 mod roughness;
 mod sheet;
@@ -23,10 +24,8 @@ use super::scene::MaterialUse;
 use super::spectra::{Role, Spectra};
 use super::spectrum::{SpectrumForm, Wavelength};
 use crate::files::Files;
-use crate::json::{Code, List, NonNegative, Optional, Positive, Reader, Required, Rule, Span, Spanned, Whole};
-use crate::model::{
-    FacetDistribution, FacetMasking, InternalReflection, LEAST_ALPHA, Material, MaterialKind, Medium, Metal, Side,
-};
+use crate::json::{List, NonNegative, Optional, Positive, Reader, Required, Rule, Span, Spanned, Whole};
+use crate::model::{FacetDistribution, FacetMasking, LEAST_ALPHA, Material, MaterialKind, Medium, Metal, Side};
 pub(crate) use blend::Before;
 pub use blend::MOST_BLEND_PARTS;
 use blend::blend;
@@ -37,6 +36,7 @@ use grating::{GratingMaterial, grating};
 pub(super) use index::{IndexForm, index, least};
 use index::{NamedMetal, complex_index, complex_keys};
 use measured::{MeasuredMaterial, measured};
+use plastic::{PlasticMaterial, plastic};
 use principled::{PrincipledMaterial, principled};
 use roughness::{RoughnessKeys, roughness, roughness_keys};
 use sheet::{PolariserMaterial, RetarderMaterial, polariser, retarder};
@@ -199,48 +199,6 @@ crate::record! {
         sides: Required<MaterialSides> = r#""both""#,
     }
 }
-
-crate::record! {
-    /// A diffuse ground under a clear coat, seen from vacuum, on both sides unless "sides" says otherwise.
-    pub(crate) struct PlasticMaterial + comment {
-        /// Share of light that the ground reflects, from 0 to 1.
-        reflectance: Required<SpectrumForm>,
-        /// Index of the coat.
-        coat: Required<IndexForm> = "1.5",
-        /// Roughness of the coat: the width α of the distribution of facet normals, 0 (smooth) or from 0.0001 to 1.
-        alpha: Required<Spanned<Alpha>> = "0",
-        /// Instead: the coat's width along the tangent, the direction in which u grows, from 0.0001 to 1.
-        alpha_u: Optional<Width>,
-        /// And the width across the tangent, from 0.0001 to 1.
-        alpha_v: Optional<Width>,
-        /// By how much the tangent is turned from growing u toward growing v, degrees.
-        tangent_rotation_deg: Optional<f64>,
-        /// Instead: an image that says the coat's width at each place.
-        roughness_image: Optional<RoughnessImageForm>,
-        /// How the slopes of facets are distributed.
-        distribution: Required<FacetDistribution> = r#""ggx""#,
-        /// How facets hide each other from reflected light.
-        masking: Required<FacetMasking> = r#""correlated""#,
-        /// Whether the base colours light each time that the coat reflects it back down ("coloured") or only once ("uncoloured").
-        internal_reflection: Required<InternalReflection> = r#""coloured""#,
-        /// Which sides reflect; another is black.
-        sides: Required<MaterialSides> = r#""both""#,
-    } with [
-        Rule::NotBoth("alpha", "roughness_image"),
-        Rule::NotBoth("alpha", "alpha_u"),
-        Rule::NotBoth("alpha_u", "roughness_image"),
-        Rule::Needs("alpha_u", &["alpha_v"]),
-        Rule::Needs("alpha_v", &["alpha_u"]),
-        Rule::Needs("tangent_rotation_deg", &["alpha_u"]),
-    ]
-}
-
-crate::keywords!(InternalReflection {
-    /// Each reflection colours it: ρ/(1 − ρ rᵢ).
-    "coloured" => Self::Coloured,
-    /// As if the base were white from the second time on, as other renderers have it: ρ/(1 − rᵢ).
-    "uncoloured" => Self::Uncoloured,
-});
 
 crate::record! {
     /// A pane of glass without thickness: mirrors light, or lets it pass straight on.
@@ -406,30 +364,7 @@ pub(crate) fn material<'f>(
             Some(rough.sides?.of(MaterialKind::OrenNayar { reflectance, roughness: rough.roughness?.0 }))
         }
         MaterialForm::Translucent(form) => translucent(form, spectra, files, reader),
-        MaterialForm::Plastic(plastic) => {
-            let reflectance = plastic
-                .reflectance
-                .as_ref()
-                .and_then(|form| spectra.resolve_texture(form, Role::Reflectance, files, reader));
-            let coat = plastic.coat.as_ref().and_then(|form| index(form, spectra.range_nm, reader));
-            let roughness = roughness(&roughness_keys!(plastic), files, reader);
-            let (reflectance, coat, roughness) = (reflectance?, coat?, roughness?);
-            let internal_reflection = plastic.internal_reflection?;
-            // As in glass from inside: where total reflection begins, tables of two widths cannot say.
-            if roughness.has_two_widths() && spectra.range_nm.is_some_and(|range_nm| least(&coat, range_nm) < 1.0) {
-                let message = "a coat of two widths must have an index of at least 1";
-                let hint = "give one width \"alpha\"";
-                reader.error_hint(Code::OutOfRange, plastic.at.head(), message, hint);
-                return None;
-            }
-            let kind = roughness.material(|facets| MaterialKind::Plastic {
-                reflectance: reflectance.clone(),
-                coat: coat.clone(),
-                facets,
-                internal_reflection,
-            });
-            Some(plastic.sides?.of(kind))
-        }
+        MaterialForm::Plastic(form) => plastic(form, spectra, files, reader),
         MaterialForm::ThinDielectric(pane) => {
             let index = pane.index.as_ref().and_then(|form| index(form, spectra.range_nm, reader));
             let film = thin_film(&pane.thin_film, spectra.range_nm, files, reader);

@@ -83,6 +83,11 @@ impl Chance {
                 json!({"type": "blend", "weight": self.within(0.0, 1.0), "first": {"type": "lambert", "reflectance": self.spectrum(1.0)},
                     "second": {"type": "mirror"}})
             }
+            13 => {
+                json!({"type": "principled", "reflectance": self.spectrum(0.6), "alpha": self.within(0.05, 0.8), "metallic": self.within(0.0, 1.0),
+                    "specular_tint": self.within(0.0, 1.0), "flatness": self.within(0.0, 1.0), "sheen": self.within(0.0, 0.3),
+                    "sheen_tint": self.within(0.0, 1.0), "clear_coat": self.within(0.0, 1.0)})
+            }
             6 => json!({"type": "fluorescent", "reflectance": self.within(0.0, 0.4), "fluorophores": [{
                 "absorption": {"type": "tabulated", "outside": "zero", "wavelengths_nm": [390, 430, 520], "values": [0.1, self.within(0.2, 0.6), 0]},
                 "emission": {"type": "tabulated", "outside": "zero", "wavelengths_nm": [410, 540, 640], "values": [0, 1, 0.2]},
