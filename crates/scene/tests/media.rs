@@ -67,7 +67,7 @@ fn with_grid(medium: &str) -> Result<Loaded, SceneErrors> {
 fn albedos(keys: &str) -> AlbedoGrid {
     let medium = format!(r#""extinction_per_m": 2, "albedo": 0.5, "albedo_grid": {{ {keys} }}"#);
     let loaded = with_grid(&medium).unwrap_or_else(|errors| panic!("{errors}"));
-    loaded.scene.materials[1].medium.clone().expect("a medium").albedo.expect("a grid")
+    loaded.scene.materials[1].medium.clone().expect("a medium").albedo.expect("a grid").as_ref().clone()
 }
 
 #[test]

@@ -10,6 +10,7 @@ use etalon_scene::{
 use etalon_transport::plan::LaneModel;
 use etalon_transport::{EffectName, Study, prepare};
 use serde_json::{Value, json};
+use std::sync::Arc;
 
 use crate::common::rendering::{mean_y, parse, render};
 
@@ -348,7 +349,7 @@ fn grids_of_albedos_are_left_out_with_what_they_stand_for() {
         let transform = scene.objects[0].transform.clone();
         let (box_m, cells) = ([[-2.0, 0.0, -2.0], [2.0, 2.0, 2.0]], [1, 2, 1]);
         let grid = AlbedoGrid { cells, channels: 3, values: values.into(), box_m, transform, wrap: Wrap::Clamp };
-        scene.medium.as_mut().expect("it has one").albedo = Some(grid);
+        scene.medium.as_mut().expect("it has one").albedo = Some(Arc::new(grid));
         scene
     };
     let grey = with([0.25, 0.25, 0.25, 0.75, 0.75, 0.75]);

@@ -1,6 +1,7 @@
 //! Media.
 
 use std::ops::Bound;
+use std::sync::Arc;
 
 use super::geometry::{Step, transform};
 use super::material::Share;
@@ -199,7 +200,7 @@ pub(super) fn medium<'f>(
     };
     let albedo = match &form.albedo_grid {
         Optional::Absent => Some(None),
-        Optional::Given(form) => albedo_grid(form, files, reader).map(Some),
+        Optional::Given(form) => albedo_grid(form, files, reader).map(|grid| Some(Arc::new(grid))),
         Optional::Invalid => None,
     };
     let (absorption, scattering) = coefficients?;

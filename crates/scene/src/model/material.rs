@@ -233,7 +233,7 @@ pub enum MaterialKind {
         /// Its facets.
         facets: Microfacets,
         /// How much there is of each lobe.
-        lobes: PrincipledLobes,
+        lobes: Box<PrincipledLobes>,
     },
     /// Materials side by side, finer than can be seen: everywhere the two between whose places a number lies, in linear
     /// proportion; the first below its place, the last above.

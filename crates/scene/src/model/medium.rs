@@ -21,7 +21,7 @@ pub struct Medium {
     pub density: MediumDensity,
     /// The share of `scattering` that is scattered at each place; the rest is absorbed. All is scattered without it. A medium that has it emits
     /// nothing.
-    pub albedo: Option<AlbedoGrid>,
+    pub albedo: Option<Arc<AlbedoGrid>>,
 }
 
 /// How dense a medium is at each place, relative to what its coefficients say.

@@ -195,7 +195,7 @@ fn materials_and_spectra() {
         reflectance: Spectrum::rgb_reflectance([0.8, 0.1, 0.1]).expect("right").into(),
         index: RefractiveIndex::Constant(1.5),
         facets: facets([0.25; 2], 0.0),
-        lobes: PrincipledLobes {
+        lobes: Box::new(PrincipledLobes {
             metallic: 0.5,
             specular_tint: 0.25,
             flatness: 0.125,
@@ -203,14 +203,14 @@ fn materials_and_spectra() {
             sheen_tint: 0.75,
             clear_coat: 1.0,
             clear_coat_alpha: 0.0625,
-        },
+        }),
     };
     assert_eq!(kind(&scene, "car"), &MaterialKind::OneSided { kind: Box::new(car), side: Side::Front });
     let pot = MaterialKind::Principled {
         reflectance: Spectrum::Constant(0.5).into(),
         index: RefractiveIndex::Constant(1.5),
         facets: facets([0.25, 0.5], 45.0_f64.to_radians()),
-        lobes: PrincipledLobes { clear_coat_alpha: 0.1, ..PrincipledLobes::default() },
+        lobes: Box::new(PrincipledLobes { clear_coat_alpha: 0.1, ..PrincipledLobes::default() }),
     };
     assert_eq!(kind(&scene, "pot"), &pot);
     assert_eq!(kind(&scene, "pane"), &MaterialKind::ThinDielectric { index: glass("N-BK7"), film: None });

@@ -128,7 +128,7 @@ pub enum Bsdf {
     /// A measured surface.
     Measured(Measured),
     /// A surface of several lobes that are added.
-    Principled(Principled),
+    Principled(Box<Principled>),
     /// A mixture of others.
     Blend(Blend),
     /// Another on one side.
@@ -219,7 +219,7 @@ impl Bsdf {
             }
             MaterialKind::Measured { surface } => Self::Measured(Measured::new(surface)),
             MaterialKind::Principled { reflectance, index, facets, lobes } => {
-                Self::Principled(Principled::new(reflectance, index.clone(), facets, *lobes, range_nm))
+                Self::Principled(Box::new(Principled::new(reflectance, index.clone(), facets, **lobes, range_nm)))
             }
             MaterialKind::Blend { parts, by } => {
                 let parts = parts.iter().map(|(place, part)| (*place, Self::new(part, range_nm)));

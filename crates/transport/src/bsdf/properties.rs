@@ -159,7 +159,7 @@ mod tests {
             reflectance: Spectrum::Constant(r).into(),
             index: interior.clone(),
             facets: grained,
-            lobes,
+            lobes: Box::new(lobes),
         }));
         // Some nanometres of silver pass a part and reflect a part; also on a metal that would reflect nothing.
         let film = || {

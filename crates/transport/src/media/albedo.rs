@@ -5,11 +5,12 @@ use crate::frame::SceneFrame;
 use etalon_optics::spectrum::RgbBasis;
 use etalon_optics::{Lanes, Vec3};
 use glam::{DAffine3, DVec3};
+use std::sync::Arc;
 
 /// A grid of a scene, prepared for paths.
 #[derive(Clone, Debug)]
 pub(crate) struct AlbedoGrid {
-    grid: etalon_scene::AlbedoGrid,
+    grid: Arc<etalon_scene::AlbedoGrid>,
     /// From the frame to coordinates in which the box of the grid reaches from 0 to 1.
     to_box: DAffine3,
     /// What the channels are at each wavelength.
@@ -17,7 +18,7 @@ pub(crate) struct AlbedoGrid {
 }
 
 impl AlbedoGrid {
-    pub(super) fn new(grid: &etalon_scene::AlbedoGrid, frame: &SceneFrame) -> Self {
+    pub(super) fn new(grid: &Arc<etalon_scene::AlbedoGrid>, frame: &SceneFrame) -> Self {
         // The middle of cell i lies at (i + ½)/n.
         let per_cell = DVec3::from_array(grid.cells.map(f64::from)).recip();
         let of_cells = DAffine3::from_scale(per_cell) * DAffine3::from_translation(DVec3::splat(0.5));

@@ -137,7 +137,7 @@ fn leave_out(effect: EffectName, scene: &mut Scene) {
             for medium in media_mut(scene) {
                 let Medium { absorption, scattering, source, albedo, .. } = medium;
                 if let Some(grid) = albedo {
-                    grid.turn_grey(rec709_luminance);
+                    Arc::make_mut(grid).turn_grey(rec709_luminance);
                 }
                 for spectrum in [absorption, scattering].into_iter().chain(source) {
                     *spectrum = grey(spectrum, range_nm);

@@ -17,7 +17,7 @@ fn of(base: Spectrum, index: f64, alpha: [f64; 2], lobes: PrincipledLobes) -> Ma
         reflectance: base.into(),
         index: RefractiveIndex::Constant(index),
         facets: Microfacets { masking: FacetMasking::Separable, ..Microfacets::ggx(alpha, 0.4) },
-        lobes: PrincipledLobes { clear_coat_alpha: 0.1, ..lobes },
+        lobes: Box::new(PrincipledLobes { clear_coat_alpha: 0.1, ..lobes }),
     }
 }
 

@@ -123,7 +123,7 @@ pub(super) fn principled<'f>(
             reflectance: reflectance.clone(),
             index: index.clone(),
             facets,
-            lobes: PrincipledLobes { metallic, ..lobes },
+            lobes: Box::new(PrincipledLobes { metallic, ..lobes }),
         };
         match &image {
             // Each lobe is linear in the share.
