@@ -8,7 +8,7 @@ use etalon_scene::{
     TextureFilter, Wrap,
 };
 use etalon_transport::plan::LaneModel;
-use etalon_transport::{EffectName, Study, prepare};
+use etalon_transport::{EffectName, Study, prepare, prepare_study};
 use serde_json::{Value, json};
 use std::sync::Arc;
 
@@ -152,7 +152,7 @@ fn films_that_are_left_out_leave_bare_surfaces() {
         "integrator": {"spp": 64}
     });
     let scene = parse(&grey.to_string());
-    let plan = |study: &Study| etalon_transport::prepare_study(&scene, study).unwrap().plan().clone();
+    let plan = |study: &Study| prepare_study(&scene, study).unwrap().plan().clone();
     assert_eq!(plan(&Study::default()).lane_model, LaneModel::Hero);
     assert_eq!(plan(&without(EffectName::Wavelengths)).lane_model, LaneModel::One);
     let film = etalon_oracle::laws::CoatedInterface::single(1.0, [1.33, 0.0, 300.0], 1.0);
@@ -359,6 +359,13 @@ fn grids_of_albedos_are_left_out_with_what_they_stand_for() {
     json["medium"] = json!({"extinction_per_m": 0, "albedo": 1});
     let clear = render(&parse(&json.to_string()), &Study::default());
     assert!((mean_y(&white) / mean_y(&clear) - 1.0).abs() < 1e-9);
+    // A single wavelength has no whole nanometre beside it.
+    json["integrator"]["wavelength_range_nm"] = json!([550.2, 550.3]);
+    json["medium"] = json!({"extinction_per_m": 0.4, "albedo": 1});
+    let mut narrow = parse(&json.to_string());
+    narrow.medium.as_mut().expect("it has one").albedo = grey.medium.as_ref().expect("it has one").albedo.clone();
+    let _ = prepare_study(&narrow, &without(EffectName::Scattering)).unwrap();
+    json["integrator"]["wavelength_range_nm"] = json!([400, 700]);
     // Half of it in the mean.
     let half = render(&grey, &without(EffectName::Scattering));
     json["medium"] = json!({"absorption_per_m": 0.2});

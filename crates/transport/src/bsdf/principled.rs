@@ -53,7 +53,7 @@ pub struct Principled {
 }
 
 /// What the lobe is chosen by: shares of the light, which add up to 1.
-struct Shares {
+struct Probabilities {
     diffuse: f64,
     specular: f64,
     coat: f64,
@@ -97,7 +97,7 @@ impl Principled {
     }
 
     /// The share of each lobe for a viewer at a cosine to the normal.
-    fn shares(&self, mu: f64) -> Shares {
+    fn shares(&self, mu: f64) -> Probabilities {
         let lobes = &self.lobes;
         let (dielectric, metal) = (1.0 - lobes.metallic, lobes.metallic);
         // Never 0: facets are tilted where the surface is not.
@@ -110,9 +110,9 @@ impl Principled {
         let all = diffuse + specular + coat;
         if all == 0.0 {
             // It reflects nothing, or next to nothing.
-            return Shares { diffuse: 1.0, specular: 0.0, coat: 0.0 };
+            return Probabilities { diffuse: 1.0, specular: 0.0, coat: 0.0 };
         }
-        Shares { diffuse: diffuse / all, specular: specular / all, coat: coat / all }
+        Probabilities { diffuse: diffuse / all, specular: specular / all, coat: coat / all }
     }
 
     /// ρ/Y at a place, 1 where Y is 0.

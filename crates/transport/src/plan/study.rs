@@ -11,6 +11,7 @@ use etalon_scene::{
     Filter, Image, ImageTexture, LightSampling, MaterialKind, Medium, Mesh, Metal, Object, ParameterMut,
     PolarisingSheet, Projection, Scene, Shape, SpectrumTexture, Texels,
 };
+use std::iter;
 use std::sync::Arc;
 
 /// What to simulate otherwise than a scene calls for. Empty by default.
@@ -194,11 +195,18 @@ fn leave_out(effect: EffectName, scene: &mut Scene) {
             medium.albedo = None;
         }),
         EffectName::Scattering => media_mut(scene).for_each(|medium| {
-            // What a grid leaves to be absorbed is, by its mean; rounding may make a little more than 1 of white.
+            /// White is 1 but for rounding, and what rounding leaves must not end an endless way.
+            const ROUNDED: f64 = 1e-12;
+            // What a grid leaves to be absorbed is, by its mean.
             if let Some(grid) = medium.albedo.take() {
                 let basis = RgbBasis::get();
-                let (mean, nm) = (grid.mean(), whole_nm(range_nm).collect::<Vec<_>>());
-                let rest = |nm: f64| medium.scattering.eval(nm) * (1.0 - basis.reflectance(mean, nm)).max(0.0);
+                let (mean, [first, last]) = (grid.mean(), range_nm);
+                let mut nm: Vec<f64> = iter::once(first).chain(whole_nm(range_nm)).chain([last]).collect();
+                nm.dedup();
+                let rest = |nm: f64| match 1.0 - basis.reflectance(mean, nm) {
+                    rest if rest > ROUNDED => medium.scattering.eval(nm) * rest,
+                    _ => 0.0,
+                };
                 let values = nm.iter().map(|&nm| medium.absorption.eval(nm) + rest(nm)).collect();
                 medium.absorption = Spectrum::tabulated(nm, values, Outside::Hold).expect("sums of what is valid");
             }
