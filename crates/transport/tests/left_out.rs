@@ -360,12 +360,13 @@ fn grids_of_albedos_are_left_out_with_what_they_stand_for() {
     let clear = render(&parse(&json.to_string()), &Study::default());
     assert!((mean_y(&white) / mean_y(&clear) - 1.0).abs() < 1e-9);
     // A single wavelength has no whole nanometre beside it.
-    json["integrator"]["wavelength_range_nm"] = json!([550.2, 550.3]);
-    json["medium"] = json!({"extinction_per_m": 0.4, "albedo": 1});
-    let mut narrow = parse(&json.to_string());
+    let mut line = json.clone();
+    line["film"].as_object_mut().expect("a film").remove("bands_nm");
+    line["integrator"]["wavelength_range_nm"] = json!([550.2, 550.3]);
+    line["medium"] = json!({"extinction_per_m": 0.4, "albedo": 1});
+    let mut narrow = parse(&line.to_string());
     narrow.medium.as_mut().expect("it has one").albedo = grey.medium.as_ref().expect("it has one").albedo.clone();
     let _ = prepare_study(&narrow, &without(EffectName::Scattering)).unwrap();
-    json["integrator"]["wavelength_range_nm"] = json!([400, 700]);
     // Half of it in the mean.
     let half = render(&grey, &without(EffectName::Scattering));
     json["medium"] = json!({"absorption_per_m": 0.2});
