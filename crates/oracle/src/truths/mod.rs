@@ -53,6 +53,7 @@ mod phase_matrices;
 mod polarised;
 mod principled;
 mod principled_lobes;
+mod principled_tints;
 mod prisms;
 mod rami;
 mod relief;
@@ -355,7 +356,7 @@ pub fn truths() -> Vec<Truth> {
     LIST.clone()
 }
 
-const GROUPS: [fn() -> Vec<Truth>; 48] = [
+const GROUPS: [fn() -> Vec<Truth>; 49] = [
     lamps_behind_glass::truths,
     furnaces::truths,
     beckmann::truths,
@@ -396,6 +397,7 @@ const GROUPS: [fn() -> Vec<Truth>; 48] = [
     translucent::truths,
     measured::truths,
     principled::truths,
+    principled_tints::truths,
     media::truths,
     albedo_grids::truths,
     nested_media::truths,

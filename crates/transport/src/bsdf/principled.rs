@@ -52,7 +52,7 @@ pub struct Principled {
     luminance: Option<f64>,
 }
 
-/// What the lobe is chosen by: shares of the light, which add up to 1.
+/// What the lobe is chosen by; they add up to 1.
 struct Probabilities {
     diffuse: f64,
     specular: f64,
@@ -96,8 +96,8 @@ impl Principled {
         Properties::of_facets(facets)
     }
 
-    /// The share of each lobe for a viewer at a cosine to the normal.
-    fn shares(&self, mu: f64) -> Probabilities {
+    /// The probability of each lobe for a viewer at a cosine to the normal.
+    fn probabilities(&self, mu: f64) -> Probabilities {
         let lobes = &self.lobes;
         let (dielectric, metal) = (1.0 - lobes.metallic, lobes.metallic);
         // Never 0: facets are tilted where the surface is not.
@@ -147,7 +147,7 @@ impl Principled {
         }
         let lobes = &self.lobes;
         let facets = self.distribution.reflection(wo, wi);
-        let shares = self.shares(wo.z.min(1.0));
+        let probabilities = self.probabilities(wo.z.min(1.0));
         let v = grazing(facets.cos);
         let base: Lanes<f64, N> = self.reflectance.lanes(lambda_nm, at.texture_point());
         let tint = if lobes.has_tints() { self.tint(base, at.texture_point()) } else { Lanes::ONE };
@@ -166,7 +166,9 @@ impl Principled {
             let of_sheen = 1.0 + lobes.sheen_tint * (tint[lane] - 1.0);
             (base[lane] * diffuse + of_sheen * sheen + fresnel * facets.term + coated) * wi.z
         });
-        let density = shares.diffuse * wi.z * FRAC_1_PI + shares.specular * facets.density + shares.coat * coat[1];
+        let density = probabilities.diffuse * wi.z * FRAC_1_PI
+            + probabilities.specular * facets.density
+            + probabilities.coat * coat[1];
         Some((f_cos, density))
     }
 
@@ -194,10 +196,10 @@ impl Principled {
     ) -> Option<BsdfSample<N>> {
         let facing: Facing = self.distribution.facing(at, n, wo)?;
         let [u_lobe, u1, u2] = u;
-        let shares = self.shares(facing.wo.z.min(1.0));
+        let probabilities = self.probabilities(facing.wo.z.min(1.0));
         let wi = match &self.coat {
-            _ if u_lobe < shares.diffuse => cosine_hemisphere([u1, u2]),
-            Some(coat) if u_lobe >= 1.0 - shares.coat => coat.sample(facing.wo, [u1, u2]),
+            _ if u_lobe < probabilities.diffuse => cosine_hemisphere([u1, u2]),
+            Some(coat) if u_lobe >= 1.0 - probabilities.coat => coat.sample(facing.wo, [u1, u2]),
             _ => facing.wo.reflected_about(self.distribution.visible_normal(facing.wo, [u1, u2])),
         };
         let wi = facing.world(wi);

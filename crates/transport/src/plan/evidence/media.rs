@@ -33,7 +33,7 @@ pub(super) fn absorption(scene: &Scene) -> Option<String> {
             return medium.absorbs().then(everywhere);
         };
         let [r, g, b] = grid.mean().map(|channel| 1.0 - channel);
-        let by_grid = format!("a grid takes {r:.3}, {g:.3} and {b:.3} of what is scattered in the mean");
+        let by_grid = format!("by a grid, in the mean {r:.3}, {g:.3} and {b:.3} of σₛ");
         Some(if medium.absorption.is_zero() { by_grid } else { format!("{}; {by_grid}", everywhere()) })
     })
 }
