@@ -72,7 +72,7 @@ pub(crate) struct Settings {
     /// Trace one path at a time, or many at once. Both give the same picture, bit for bit. Default: the faster one.
     #[arg(long = "loop", value_enum, value_name = "WHICH", help_heading = STUDY)]
     path_loop: Option<PathLoopArg>,
-    /// Sample all diffuse directions by the cosine. Guide none toward mirrors and glass.
+    /// Try nothing before the picture: sample diffuse directions by the cosine, and wavelengths alike in every pixel.
     #[arg(long, help_heading = STUDY)]
     by_cosine: bool,
 }

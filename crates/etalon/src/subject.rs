@@ -40,6 +40,12 @@ pub struct Subject {
     pub plan: Value,
     /// The share of directions that is drawn toward what casts caustics, and how many these are: bodies, and images of lamps.
     pub guided_targets: [(f64, usize); 2],
+    /// Regions that draw wavelengths by what they bring there, and all regions.
+    #[serde(default)]
+    pub guided_wavelengths: (usize, usize),
+    /// The shares of the vertices from which specular connections are made, if any are.
+    #[serde(default)]
+    pub connection_shares: Option<[f64; 2]>,
 }
 
 /// Bands of wavelengths, and how the film keeps them.
@@ -106,6 +112,8 @@ impl Subject {
             }),
             plan: serde_json::to_value(prepared.plan()).expect("a plan is plain data"),
             guided_targets: [prepared.guided_targets(), prepared.specular_light_images()],
+            guided_wavelengths: prepared.guided_wavelengths(),
+            connection_shares: prepared.connection_shares(),
         }
     }
 
@@ -154,6 +162,8 @@ impl Subject {
                 "replicates",
                 "bands",
                 "guided_targets",
+                "guided_wavelengths",
+                "connection_shares",
             ];
             let first: Vec<_> = first.iter().map(|&key| (key.to_owned(), value[key].take())).collect();
             first.into_iter().chain(plan.into_iter().map(|(key, value)| (format!("plan.{key}"), value))).collect()
@@ -178,6 +188,10 @@ impl Subject {
             .find(|(_, a, b)| a != b)
             .map(|(key, own, other)| match key.as_str() {
                 "guided_targets" => "its paths are guided toward other objects (see `etalon explain`)".to_owned(),
+                "guided_wavelengths" => "it draws other wavelengths (see `etalon explain`)".to_owned(),
+                "connection_shares" => {
+                    "it makes specular connections from other vertices (see `etalon explain`)".to_owned()
+                }
                 "plan.effects" => "it simulates other effects (see `etalon explain`)".to_owned(),
                 "frame" => format!("it is {}, not {}", frame_name(self.frame), frame_name(other_frame)),
                 _ => format!("{} is {own}, not {other}", name(key)),
@@ -213,6 +227,8 @@ mod tests {
             image_numerical_aperture: None,
             bands: None,
             guided_targets: [(0.0, 0); 2],
+            guided_wavelengths: (0, 0),
+            connection_shares: None,
             plan: serde_json::json!({"sampler": "sobol", "approximations": ["lens: everything is in focus"]}),
         };
         assert_eq!(subject.difference(&subject.clone()), None);
@@ -230,6 +246,11 @@ mod tests {
         assert_eq!(
             with(&|s| s.guided_targets[1] = (0.5, 2)),
             "its paths are guided toward other objects (see `etalon explain`)"
+        );
+        assert_eq!(with(&|s| s.guided_wavelengths = (3, 16)), "it draws other wavelengths (see `etalon explain`)");
+        assert_eq!(
+            with(&|s| s.connection_shares = Some([1.0, 0.25])),
+            "it makes specular connections from other vertices (see `etalon explain`)"
         );
         assert_eq!(with(&|s| s.scene_sha256 = "cd".to_owned()), "the SHA-256 of its scene is \"ab\", not \"cd\"");
         assert_eq!(

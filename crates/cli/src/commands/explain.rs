@@ -46,6 +46,11 @@ struct ExplainJson<'a> {
     /// The largest share that is drawn toward images of lamps in smooth balls, and how many these are; 0 where that does not pay.
     specular_image_share: f64,
     specular_light_images: usize,
+    /// Shares of the vertices from which specular connections are made: of those that the camera sees, and of others.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    connection_shares: Option<[f64; 2]>,
+    /// Regions of the picture that draw wavelengths by what they bring there, and all regions; 0 and 0 where that does not pay.
+    guided_wavelengths: (usize, usize),
     /// What effects that are off would have cost, if it was measured.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     costs: Vec<Cost>,
@@ -85,6 +90,8 @@ pub(crate) fn run(args: ExplainArgs) -> Outcome {
             guided_targets,
             specular_image_share,
             specular_light_images,
+            connection_shares: prepared.connection_shares(),
+            guided_wavelengths: prepared.guided_wavelengths(),
             costs,
         });
     } else {
@@ -119,6 +126,16 @@ fn describe(prepared: &Prepared, costs: &[Cost]) -> String {
         let share = format!("up to {:.0} % of the directions at diffuse surfaces aim at", 100.0 * share);
         let images_word = if images == 1 { "image of a lamp in a ball" } else { "images of lamps in balls" };
         lines.push(format!("{:<20} {share} {images} {images_word}: a trial found less noise", "caustics"));
+    }
+    if let Some([direct, indirect]) = prepared.connection_shares() {
+        let percent = |share: f64| format!("{:.0} %", 100.0 * share);
+        let what =
+            format!("from {} of the vertices that the camera sees, {} of others", percent(direct), percent(indirect));
+        lines.push(format!("{:<20} {what}", "connections"));
+    }
+    if let (guided @ 1.., regions) = prepared.guided_wavelengths() {
+        let what = format!("of a hero more often where it brings light, in {guided} of {regions} regions");
+        lines.push(format!("{:<20} {what}: a trial found less noise", "wavelengths"));
     }
     for lost in &plan.approximations {
         lines.push(format!("{:<20} without {lost}", "approximation"));

@@ -92,7 +92,7 @@ impl<'a, const N: usize> Starts<'a, N> {
             camera_numbers(level, &self.samplers, 1, wanted, &mut numbers);
         }
         for lane in 0..self.count {
-            self.wavelengths[lane] = M::wavelengths(self.tracer.prepared, || numbers[0][lane]);
+            self.wavelengths[lane] = M::wavelengths(self.tracer.prepared, x[lane], y[lane], || numbers[0][lane]);
         }
         if moves {
             // Blocks share wavelengths alone, and nothing that moves.

@@ -37,7 +37,13 @@ pub(crate) struct SpecularConnections {
     bodies: Vec<GuidedTarget>,
     /// A distance from any of them beyond which there is nothing.
     reach: f64,
+    /// The share of the vertices from which connections are made: of those that the camera sees directly or by way of mirrors and glass alone, and
+    /// of those behind a vertex that scatters. A trial may have it otherwise.
+    pub(crate) shares: [f64; 2],
 }
+
+/// The shares without a trial. What a path sees directly is seen best.
+pub(crate) const USUAL_SHARES: [f64; 2] = [1.0, 0.25];
 
 impl SpecularConnections {
     /// Those of a scene; `table` makes a table of some lights. `None` if it has no lamp without area.
@@ -56,7 +62,7 @@ impl SpecularConnections {
         let bodies = specular_bodies(surfaces, geometry, |of| surfaces.properties[of.material].has_delta());
         let bodies = bodies.into_iter().map(|(body, _)| body).collect();
         let reach = geometry.bounds().map_or(1.0, |bounds| bounds.extent().length());
-        Some(Self { lights: table(deltas), numbers, has_beams, bodies, reach })
+        Some(Self { lights: table(deltas), numbers, has_beams, bodies, reach, shares: USUAL_SHARES })
     }
 
     /// A direction from a point by which a search may begin: straight toward the lamp, toward a body, or any.

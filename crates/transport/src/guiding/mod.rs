@@ -22,7 +22,7 @@ mod specular_image;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use connections::{SeedNumbers, SpecularConnections};
+pub(crate) use connections::{SeedNumbers, SpecularConnections, USUAL_SHARES};
 pub(crate) use hull::Hull;
 pub(crate) use mixture::{
     Aimed, Mixture, VisibleImages, density_of, is_within, place_within, share_of, specular_image_share,

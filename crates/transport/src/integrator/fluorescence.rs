@@ -142,6 +142,6 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             Some(reradiated) => reradiated.shares = shares,
             none => *none = Some(Box::new(Reradiated { wavelengths, polarisation, shares })),
         }
-        self.lanes = M::start();
+        self.lanes = M::start(&self.wavelengths);
     }
 }

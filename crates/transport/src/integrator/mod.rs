@@ -19,6 +19,7 @@
 //! must not depend on which lane is the hero, or the two no longer add up to one for the lanes together. So what meets a
 //! light's density is the mean of the lanes' own densities, each weighed by its share of the path so far.
 
+pub(crate) mod connection_trial;
 mod emission;
 pub(crate) mod film_entry;
 mod fluorescence;
@@ -35,6 +36,7 @@ pub(crate) mod tracer;
 pub(crate) mod trial;
 mod vertex;
 pub(crate) mod wavelength_lanes;
+pub(crate) mod wavelength_trial;
 
 pub(crate) use next_event::{LambertTerms, LightDraw, NextEvent, beyond_target, light_weight};
 pub(crate) use path::{Arrival, Intersection, Path, Start};

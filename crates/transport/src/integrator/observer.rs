@@ -34,6 +34,8 @@ pub(crate) trait Observer<const N: usize> {
     fn light(&mut self, _vertex: u32, _how: Found, _radiance: Lanes<f64, N>) {}
     /// A direction is drawn from a mixture.
     fn direction(&mut self, _mixture: &Mixture) {}
+    /// A specular connection was tried, from a vertex behind one that scatters or not, and took this many rays.
+    fn connection(&mut self, _indirect: bool, _rays: u64) {}
     /// The path ends.
     fn end(&mut self, _end: End) {}
 }
@@ -81,6 +83,10 @@ impl<const N: usize> Observer<N> for &mut dyn Observer<N> {
 
     fn direction(&mut self, mixture: &Mixture) {
         (**self).direction(mixture);
+    }
+
+    fn connection(&mut self, indirect: bool, rays: u64) {
+        (**self).connection(indirect, rays);
     }
 
     fn end(&mut self, end: End) {

@@ -152,7 +152,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             wavelengths: Wavelengths::fixed([0.0; N]),
             radiance: Lanes::ZERO,
             beta: Lanes::ONE,
-            lanes: M::start(),
+            lanes: M::start(&Wavelengths::fixed([0.0; N])),
             polarisation: P::at_camera(x, y),
             vertex: 0,
             eta_squared: 1.0,
@@ -176,7 +176,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         self.wavelengths = start.wavelengths;
         self.radiance = Lanes::ZERO;
         self.beta = Lanes::splat(start.weight);
-        self.lanes = M::start();
+        self.lanes = M::start(&start.wavelengths);
         if start.hero_only {
             // As behind an interface that disperses.
             self.beta = self.beta.hero_only();

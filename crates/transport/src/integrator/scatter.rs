@@ -207,7 +207,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             observer.end(End::NonFinite);
             return false;
         }
-        let throughput = (self.beta.max_lane() * self.lanes.weight()) * self.eta_squared;
+        let throughput = (self.beta.max_lane() * self.lanes.weight_of_even(&self.wavelengths)) * self.eta_squared;
         if throughput < THROUGHPUT_FLOOR {
             observer.end(End::Vanished);
             return false;

@@ -219,7 +219,7 @@ impl<'a> Tracer<'a> {
         counters: &mut Counters,
         observer: &mut impl Observer<N>,
     ) -> Path<'a, M, P, N> {
-        let wavelengths = M::wavelengths(self.prepared, || {
+        let wavelengths = M::wavelengths(self.prepared, x, y, || {
             let [wavelength, ..] = self.of_block(x, y, sample).set(1);
             wavelength
         });
@@ -269,7 +269,7 @@ impl<'a> Tracer<'a> {
         sampler: &Sampler,
         counters: &mut Counters,
     ) -> (Start<'a, P, N>, bool) {
-        let wavelengths = M::wavelengths(self.prepared, || {
+        let wavelengths = M::wavelengths(self.prepared, x, y, || {
             let [wavelength, ..] = self.of_block(x, y, sample).set(1);
             wavelength
         });

@@ -15,7 +15,7 @@ pub(crate) const TRIED: f64 = 0.35;
 pub(crate) const SHARES: [f64; 5] = [0.1, 0.2, 0.35, 0.5, 0.6];
 /// Pixels that are tried, and samples of each.
 const PIXELS: u64 = 1024;
-const SAMPLES: u32 = 16;
+pub(crate) const SAMPLES: u32 = 16;
 /// Paths that the trial draws more than five times as often as the cosine would do not count. Without guided targets they bear much of the
 /// variance, but are so rare that hardly any picture has them: with them, the trial promises much where nothing is won (two balls in
 /// a room: 0.1 to 0.5 of the variance, in truth 0.9 of the error).
@@ -23,10 +23,49 @@ const RARE: f64 = 0.2;
 /// How far around a pixel its level is averaged, in tried pixels.
 const NEAR: usize = 2;
 
+/// The pixels of a picture that are tried, evenly spread, row by row.
+pub(crate) struct Tried {
+    columns: Vec<u32>,
+    rows: Vec<u32>,
+}
+
+impl Tried {
+    pub(crate) fn of(prepared: &Prepared) -> Self {
+        let film = &prepared.scene.film;
+        let pixels = u64::from(film.width) * u64::from(film.height);
+        // Of a small picture a quarter, lest the trial cost more than it.
+        let tried = PIXELS.min(pixels.div_ceil(4));
+        let step = (pixels as f64 / tried as f64).sqrt().ceil() as u32;
+        let along = |end: u32| (step / 2..end).step_by(step as usize).collect();
+        Self { columns: along(film.width), rows: along(film.height) }
+    }
+
+    /// What each pixel comes to: in the order of the pixels, whichever thread they are tried by.
+    pub(crate) fn map<T: Send>(&self, of_pixel: impl Fn(u32, u32) -> T + Sync) -> Vec<T> {
+        let (columns, of_pixel) = (&self.columns, &of_pixel);
+        self.rows.par_iter().flat_map_iter(|&y| columns.iter().map(move |&x| of_pixel(x, y))).collect()
+    }
+
+    /// The level about each pixel, in the mean over the pixels around it: of its own few samples one bright one would make it bright, and its
+    /// variance small. And what its variance counts against: the square of the level, with a hundredth of the picture's lest black pixels count
+    /// alone.
+    pub(crate) fn levels(&self, means: &[f64]) -> Vec<(f64, f64)> {
+        let (columns, rows) = (self.columns.len(), self.rows.len());
+        let near = |at: usize, end: usize| at.saturating_sub(NEAR)..(at + NEAR + 1).min(end);
+        let around = |row: usize, column: usize| {
+            let pixels = near(row, rows).flat_map(|y| near(column, columns).map(move |x| y * columns + x));
+            let (sum, count) = pixels.fold((0.0, 0.0), |(sum, count), at| (sum + means[at], count + 1.0));
+            sum / count
+        };
+        let levels: Vec<f64> = (0..means.len()).map(|at| around(at / columns, at % columns)).collect();
+        let mean = levels.iter().sum::<f64>() / levels.len() as f64;
+        levels.into_iter().map(|level| (level, level * level + 0.01 * mean * mean)).collect()
+    }
+}
+
 /// What the paths of some pixels came to under the share that was tried.
 pub(crate) struct Trial {
-    /// Pixels of a row.
-    columns: usize,
+    tried: Tried,
     /// Pixel by pixel: the mean radiance, and its mean square without guided targets and with each of [`SHARES`].
     moments: Vec<(f64, [f64; 1 + SHARES.len()])>,
     /// Rays that were cast.
@@ -63,12 +102,7 @@ pub(crate) fn try_guided_targets<M: WavelengthModel<N>, P: Polarisation<N>, cons
     prepared: &Prepared,
     seed: u64,
 ) -> Trial {
-    let film = &prepared.scene.film;
-    let pixels = u64::from(film.width) * u64::from(film.height);
-    // Of a small picture a quarter, lest the trial cost more than it.
-    let tried = PIXELS.min(pixels.div_ceil(4));
-    let step = (pixels as f64 / tried as f64).sqrt().ceil() as u32;
-    let (rows, columns) = (step / 2..film.height, step / 2..film.width);
+    let tried = Tried::of(prepared);
     let mut tracer = Tracer::new(prepared);
     tracer.seed = seed;
     let of_pixel = |x: u32, y: u32| {
@@ -91,12 +125,8 @@ pub(crate) fn try_guided_targets<M: WavelengthModel<N>, P: Polarisation<N>, cons
         }
         ((mean, squares), counters.rays + counters.shadow_rays)
     };
-    // In the order of the pixels, whichever thread they are tried by.
-    let rows: Vec<u32> = rows.step_by(step as usize).collect();
-    let of_row = |y: u32| columns.clone().step_by(step as usize).map(move |x| (x, y));
-    let (moments, rays): (Vec<_>, Vec<u64>) =
-        rows.into_par_iter().flat_map_iter(|y| of_row(y).map(|(x, y)| of_pixel(x, y))).unzip();
-    Trial { columns: columns.clone().step_by(step as usize).count(), moments, rays: rays.into_iter().sum() }
+    let (moments, rays): (Vec<_>, Vec<u64>) = tried.map(of_pixel).into_iter().unzip();
+    Trial { tried, moments, rays: rays.into_iter().sum() }
 }
 
 impl Trial {
@@ -105,30 +135,15 @@ impl Trial {
         self.moments.iter().map(|(mean, _)| mean).sum()
     }
 
-    /// Variances over the square of the level around, with a hundredth of the picture's mean square lest black pixels count alone, in
-    /// the sum over pixels.
+    /// Variances over the square of the level around, in the sum over pixels.
     pub(crate) fn variances(&self) -> [f64; 1 + SHARES.len()] {
-        let levels = self.levels();
-        let mean = levels.iter().sum::<f64>() / levels.len() as f64;
+        let means: Vec<f64> = self.moments.iter().map(|&(mean, _)| mean).collect();
         let mut sums = [0.0; 1 + SHARES.len()];
-        for ((_, squares), level) in self.moments.iter().zip(&levels) {
+        for ((_, squares), (level, scale)) in self.moments.iter().zip(self.tried.levels(&means)) {
             for (sum, square) in sums.iter_mut().zip(squares) {
-                *sum += (square - level * level).max(0.0) / (level * level + 0.01 * mean * mean);
+                *sum += (square - level * level).max(0.0) / scale;
             }
         }
         sums
-    }
-
-    /// The level about each pixel, in the mean over the pixels around it: of its own few samples one bright one would make it bright, and its
-    /// variance small.
-    fn levels(&self) -> Vec<f64> {
-        let (columns, rows) = (self.columns, self.moments.len() / self.columns.max(1));
-        let near = |at: usize, end: usize| at.saturating_sub(NEAR)..(at + NEAR + 1).min(end);
-        let around = |row: usize, column: usize| {
-            let pixels = near(row, rows).flat_map(|y| near(column, columns).map(move |x| y * columns + x));
-            let (sum, count) = pixels.fold((0.0, 0.0), |(sum, count), at| (sum + self.moments[at].0, count + 1.0));
-            sum / count
-        };
-        (0..self.moments.len()).map(|at| around(at / columns, at % columns)).collect()
     }
 }

@@ -23,8 +23,8 @@ pub(crate) trait WavelengthModel<const N: usize>: Copy {
     /// Whether weights of lanes are carried at all; counted once a vertex.
     const CARRIES_WEIGHTS: bool;
 
-    /// At the camera.
-    fn start() -> Self;
+    /// Where a path begins with these wavelengths.
+    fn start(wavelengths: &Wavelengths<N>) -> Self;
 
     /// The path takes a step whose density in each lane, relative to the hero's, is `lane_density`. Returns the mean of
     /// those over the lanes, each weighed by its density of the path before the step.
@@ -42,8 +42,15 @@ pub(crate) trait WavelengthModel<const N: usize>: Copy {
     /// The balance heuristic over the lanes that could have been hero (Wilkie et al. 2014, eq. 5): N / Σ densities.
     fn weight(&self) -> f64;
 
-    /// The wavelengths of a path; `u` gives the hero's number, if one is to be drawn.
-    fn wavelengths(prepared: &Prepared, u: impl FnOnce() -> f64) -> Wavelengths<N>;
+    /// What [`WavelengthModel::weight`] would be if all wavelengths were drawn alike: roulette must not end a path because its region draws many
+    /// like it.
+    #[inline(always)]
+    fn weight_of_even(&self, _: &Wavelengths<N>) -> f64 {
+        self.weight()
+    }
+
+    /// The wavelengths of a path of a pixel; `u` gives the hero's number, if one is to be drawn.
+    fn wavelengths(prepared: &Prepared, x: u32, y: u32, u: impl FnOnce() -> f64) -> Wavelengths<N>;
 
     /// What each lane of the path's radiance adds to the film, in each of CIE XYZ.
     fn seen(prepared: &Prepared, wavelengths: &Wavelengths<N>, radiance: Lanes<f64, N>) -> [Lanes<f64, N>; 3];
@@ -76,7 +83,7 @@ pub(crate) struct Shared;
 #[derive(Clone, Copy)]
 pub(crate) struct ThreeChannels;
 
-/// Lanes that dispersion may part from the hero's path: their densities relative to it.
+/// Lanes that dispersion may part from the hero's path: their densities relative to it, times that of each as hero.
 #[derive(Clone, Copy)]
 pub(crate) struct Hero<const N: usize> {
     density: Lanes<f64, N>,
@@ -88,7 +95,7 @@ impl WavelengthModel<1> for OneLane {
     const CARRIES_WEIGHTS: bool = false;
 
     #[inline(always)]
-    fn start() -> Self {
+    fn start(_: &Wavelengths<1>) -> Self {
         Self
     }
 
@@ -108,7 +115,7 @@ impl WavelengthModel<1> for OneLane {
     }
 
     #[inline(always)]
-    fn wavelengths(prepared: &Prepared, _: impl FnOnce() -> f64) -> Wavelengths<1> {
+    fn wavelengths(prepared: &Prepared, _: u32, _: u32, _: impl FnOnce() -> f64) -> Wavelengths<1> {
         Wavelengths::fixed([prepared.one_lane.wavelength_nm])
     }
 
@@ -127,7 +134,7 @@ impl<const N: usize> WavelengthModel<N> for Shared {
     const CARRIES_WEIGHTS: bool = false;
 
     #[inline(always)]
-    fn start() -> Self {
+    fn start(_: &Wavelengths<N>) -> Self {
         Self
     }
 
@@ -147,7 +154,7 @@ impl<const N: usize> WavelengthModel<N> for Shared {
     }
 
     #[inline(always)]
-    fn wavelengths(prepared: &Prepared, u: impl FnOnce() -> f64) -> Wavelengths<N> {
+    fn wavelengths(prepared: &Prepared, _: u32, _: u32, u: impl FnOnce() -> f64) -> Wavelengths<N> {
         prepared.wavelengths.sample_lanes(u())
     }
 
@@ -166,8 +173,8 @@ impl<const N: usize> WavelengthModel<N> for Hero<N> {
     }
 
     #[inline(always)]
-    fn start() -> Self {
-        Self { density: Lanes::ONE, parted: false }
+    fn start(wavelengths: &Wavelengths<N>) -> Self {
+        Self { density: wavelengths.density, parted: wavelengths.density != Lanes::ONE }
     }
 
     #[inline(always)]
@@ -194,8 +201,20 @@ impl<const N: usize> WavelengthModel<N> for Hero<N> {
     }
 
     #[inline(always)]
-    fn wavelengths(prepared: &Prepared, u: impl FnOnce() -> f64) -> Wavelengths<N> {
-        prepared.wavelengths.sample_lanes(u())
+    fn weight_of_even(&self, wavelengths: &Wavelengths<N>) -> f64 {
+        if wavelengths.density == Lanes::ONE {
+            return self.weight();
+        }
+        let of_lane = |lane: usize| self.density[lane] / wavelengths.density[lane];
+        N as f64 / (0..N).map(of_lane).sum::<f64>()
+    }
+
+    #[inline(always)]
+    fn wavelengths(prepared: &Prepared, x: u32, y: u32, u: impl FnOnce() -> f64) -> Wavelengths<N> {
+        match &prepared.wavelength_guide {
+            None => prepared.wavelengths.sample_lanes(u()),
+            Some(guide) => guide.sample_lanes(&prepared.wavelengths, x, y, u()),
+        }
     }
 
     #[inline(always)]
@@ -208,7 +227,7 @@ impl WavelengthModel<3> for ThreeChannels {
     const CARRIES_WEIGHTS: bool = false;
 
     #[inline(always)]
-    fn start() -> Self {
+    fn start(_: &Wavelengths<3>) -> Self {
         Self
     }
 
@@ -227,7 +246,7 @@ impl WavelengthModel<3> for ThreeChannels {
         1.0
     }
 
-    fn wavelengths(_: &Prepared, _: impl FnOnce() -> f64) -> Wavelengths<3> {
+    fn wavelengths(_: &Prepared, _: u32, _: u32, _: impl FnOnce() -> f64) -> Wavelengths<3> {
         Wavelengths::fixed(CHANNELS_NM)
     }
 

@@ -2,15 +2,18 @@
 
 use crate::batch::render_batch;
 use crate::film::{Counters, Sums};
+use crate::integrator::connection_trial::{ConnectionTrial, try_connections};
 use crate::integrator::film_entry::{FilmEntry, SampleId};
 use crate::integrator::replay::{Replay, replay};
 use crate::integrator::reuse;
 use crate::integrator::tracer::{PixelSamples, Tracer};
 use crate::integrator::trial::{Trial, try_guided_targets};
 use crate::integrator::wavelength_lanes::{Hero, OneLane, Shared, ThreeChannels, WavelengthModel};
+use crate::integrator::wavelength_trial::{WavelengthTrial, try_wavelengths};
 use crate::plan::kernels::{self, KernelKind, LANES};
 use crate::polarisation::{Averaged, Followed, Polarisation};
 use crate::scene::prepare::Prepared;
+use crate::wavelength::guide::Regions;
 
 /// Adds samples to the sums of pixels: pixel by pixel, and in each pixel replicate by replicate. Where the last slice is not empty, adds
 /// to it the rays that each pixel took.
@@ -29,6 +32,10 @@ pub(crate) struct Kernel {
     pub replay: fn(&Prepared, u32, u32, u32) -> Replay,
     /// Tells what guided targets of caustics would win, by a trial with random numbers of a seed.
     pub try_guided_targets: fn(&Prepared, u64) -> Trial,
+    /// Tells what specular connections bring and take, by a trial with random numbers of a seed.
+    pub try_connections: fn(&Prepared, u64) -> ConnectionTrial,
+    /// Tells which wavelengths bring light in each region, by so many samples there with random numbers of a seed.
+    pub try_wavelengths: fn(&Prepared, u64, Regions, u32) -> WavelengthTrial,
 }
 
 /// The whole table. Everything else is a run-time branch.
@@ -51,6 +58,8 @@ const fn entry<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(kind: 
         render_reused: None,
         replay: replay::<M, P, N>,
         try_guided_targets: try_guided_targets::<M, P, N>,
+        try_connections: try_connections::<M, P, N>,
+        try_wavelengths: try_wavelengths::<M, P, N>,
     }
 }
 

@@ -1,12 +1,13 @@
 //! From a scene to what is rendered: prepared, then tuned by trials before the picture.
 
-use crate::guiding::GuidedBy;
+use crate::guiding::{GuidedBy, USUAL_SHARES};
 use crate::integrator::trial::{SHARES, TRIED};
-use crate::plan::Study;
+use crate::plan::{EffectName, Study};
 use crate::sampler::mix;
 use crate::scene::coincidence;
 use crate::scene::prepare::{Prepared, build};
 use crate::scene::prepare_error::PrepareError;
+use crate::wavelength::guide::Regions;
 use etalon_scene::Scene;
 
 /// What must be left of the variance. Much, since the trial knows of no strata: where the picture's samples would be spread evenly over
@@ -20,6 +21,16 @@ const LENSES_MAX_COST_RATIO: f64 = 0.9;
 
 /// The time of a ray that is refracted, over that of others: these are cast many at once. In six scenes it is 1 to 2.8.
 const REFRACTED_RAY: f64 = 2.0;
+
+/// Regions of a picture that may have wavelengths of their own, about as many at most, and samples of each that they are learned from. A picture
+/// at video size then has regions of 22 pixels.
+const REGIONS: u32 = 4096;
+const SAMPLES_OF_REGION: u32 = 512;
+/// The same of a first trial, which says whether the other is worth its time.
+const FIRST_REGIONS: u32 = 256;
+const FIRST_SAMPLES: u32 = 256;
+/// Fewest pixels of a region's side.
+const SIDE: u32 = 4;
 
 /// Prepares a scene: its frame, the shapes and the accelerator in it, the table of lights and the plan; and tunes it.
 pub fn prepare(scene: &Scene) -> Result<Prepared, PrepareError> {
@@ -46,12 +57,42 @@ pub fn prepare_frame(scene: &Scene, study: &Study, earlier: Option<Prepared>) ->
 }
 
 impl Prepared {
-    /// Tries, with random numbers of a seed, whether shadow rays are to go through glass, then what directions are to be guided by.
+    /// Tries, with random numbers of a seed, whether shadow rays are to go through glass, what directions are to be guided by,
+    /// from how many vertices specular connections are to be made, and which wavelengths are to be drawn where.
     pub fn tune(&mut self, seed: u64) {
         // An earlier frame may have found otherwise.
         (self.guided_targets.guided_by, self.guided_targets.share) = (GuidedBy::Nothing, 0.0);
         self.tune_refracted_shadows(seed);
         self.tune_guided_targets(seed);
+        self.tune_connections(seed);
+        self.tune_wavelengths(seed);
+    }
+
+    /// Makes specular connections from the share of the vertices that leaves the least variance for the rays.
+    fn tune_connections(&mut self, seed: u64) {
+        if let Some(connections) = &mut self.specular_connections {
+            connections.shares = USUAL_SHARES;
+            let shares = (self.kernel().try_connections)(self, seed).shares();
+            self.specular_connections.iter_mut().for_each(|connections| connections.shares = shares);
+        }
+    }
+
+    /// Learns which wavelengths bring light in each region of the picture, where dispersion makes that differ.
+    ///
+    /// Bands are means of all samples of a wavelength alike, and pixels that share paths share wavelengths: they do without.
+    fn tune_wavelengths(&mut self, seed: u64) {
+        self.wavelength_guide = None;
+        let called_for = self.plan().runs(EffectName::Dispersion) && !self.plan().forces(EffectName::Dispersion);
+        let film = &self.scene.film;
+        if !called_for || film.bands.is_some() || self.path_reuse().is_some() || !self.receivers.is_empty() {
+            return;
+        }
+        let learned = |most: u32, samples: u32| {
+            let regions = Regions::new(film.width, film.height, SIDE, most);
+            (self.kernel().try_wavelengths)(self, seed, regions, samples).guide()
+        };
+        let guide = learned(FIRST_REGIONS, FIRST_SAMPLES).and_then(|_| learned(REGIONS, SAMPLES_OF_REGION));
+        self.wavelength_guide = guide;
     }
 
     /// Lets shadow rays go through glass where that lowers the variance by more than it lengthens the time.

@@ -18,6 +18,7 @@ use crate::scene::world::ShadowRays;
 use crate::spectral::PathSpectrum;
 use crate::surface::{Emission, ObjectSurface, Relief, Surfaces};
 use crate::wavelength::WavelengthDistribution;
+use crate::wavelength::guide::WavelengthGuide;
 use etalon_geometry::{Geometry, SurfaceId};
 use etalon_optics::spectrum::whole_nm;
 use etalon_optics::{RefractiveIndex, Spectrum, Vec3};
@@ -47,6 +48,8 @@ pub struct Prepared {
     /// Whether some surface is only the boundary of a medium.
     pub(crate) has_boundaries: bool,
     pub(crate) wavelengths: WavelengthDistribution,
+    /// Where regions of the picture draw them otherwise.
+    pub(crate) wavelength_guide: Option<WavelengthGuide>,
     pub(crate) one_lane: OneLaneFilm,
     pub(crate) filter: FilterSampler,
     pub(crate) tables: ShadingTables,
@@ -229,6 +232,7 @@ pub(crate) fn build(scene: &Scene, study: &Study, earlier: Option<Prepared>) -> 
         lights,
         environments,
         wavelengths,
+        wavelength_guide: None,
         one_lane: OneLaneFilm::new(scene),
         filter: FilterSampler::new(&scene.film.filter),
         tables,
@@ -376,6 +380,18 @@ impl Prepared {
     pub fn guided_targets(&self) -> (f64, usize) {
         let (bodies, each) = self.guided_targets.bodies_aimed_at();
         (each * bodies.len() as f64, bodies.len())
+    }
+
+    /// In how many regions of the picture, and of how many, wavelengths are drawn by what they bring there; 0 of 0 if they are drawn alike
+    /// everywhere.
+    pub fn guided_wavelengths(&self) -> (usize, usize) {
+        self.wavelength_guide.as_ref().map_or((0, 0), |guide| (guide.guided(), guide.densities.len()))
+    }
+
+    /// The shares of the vertices from which specular connections are made: of those that the camera sees directly or by way of mirrors and
+    /// glass alone, and of those behind a vertex that scatters. `None` where there are none.
+    pub fn connection_shares(&self) -> Option<[f64; 2]> {
+        self.specular_connections.as_ref().map(|connections| connections.shares)
     }
 
     /// Whether shadow rays go through glass.

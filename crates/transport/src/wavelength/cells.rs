@@ -24,6 +24,11 @@ impl Place {
     /// Of wavelengths that are not drawn.
     pub(crate) const NONE: Self = Self { row: 0, turn: 0, fraction: 0.0 };
 
+    /// The hero's cell among this many.
+    pub(crate) fn cell(&self, cells: u32) -> u32 {
+        self.row + self.turn * (cells / TURNS as u32)
+    }
+
     /// Drawn by `u` in [0, 1) from this many cells, a power of two.
     #[inline(always)]
     pub(crate) fn draw(u: f64, cells: u32) -> Self {
@@ -101,6 +106,7 @@ mod tests {
             (0..4).for_each(|lane| assert!((four[lane] - apart(4, lane)).abs() < 1e-12, "{u}: {four:?}"));
             assert_eq!(table.along::<1>(&place)[0], eight[0]);
         }
+        (0..64).for_each(|cell| assert_eq!(Place::draw((f64::from(cell) + 0.5) / 64.0, cells).cell(cells), cell));
         let last = Place::draw(1.0_f64.next_down(), cells);
         assert!(last.fraction < 1.0 && table.at::<1>(&last)[0][0] == 63.0);
     }

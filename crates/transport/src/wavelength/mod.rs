@@ -5,6 +5,7 @@
 //! density of the distribution and the lanes together are stratified.
 
 pub(crate) mod cells;
+pub(crate) mod guide;
 
 use crate::wavelength::cells::{CellTable, Place};
 use etalon_optics::Lanes;
@@ -18,6 +19,8 @@ pub struct Wavelengths<const N: usize> {
     pub lambda_nm: Lanes<f64, N>,
     /// Where they are among the cells that they were drawn from.
     pub(crate) place: Place,
+    /// The density of each as hero, over that of the distribution: 1 unless a [`guide`](guide::WavelengthGuide) has drawn them.
+    pub(crate) density: Lanes<f64, N>,
 }
 
 /// A density over wavelengths: x̄ + ȳ + z̄ blurred, with a floor, constant within each nanometre.
@@ -216,7 +219,7 @@ impl WavelengthDistribution {
     #[inline(always)]
     pub fn sample_lanes<const N: usize>(&self, u: f64) -> Wavelengths<N> {
         let place = Place::draw(u, self.count());
-        Wavelengths { lambda_nm: self.lambda_nm.along(&place), place }
+        Wavelengths { lambda_nm: self.lambda_nm.along(&place), place, density: Lanes::ONE }
     }
 
     /// The CIE XYZ estimate that the spectral radiance estimate `radiance` stands for, normalised so that a constant
@@ -245,7 +248,7 @@ impl WavelengthDistribution {
 impl<const N: usize> Wavelengths<N> {
     /// Those that are not drawn.
     pub(crate) const fn fixed(lambda_nm: [f64; N]) -> Self {
-        Self { lambda_nm: Lanes(lambda_nm), place: Place::NONE }
+        Self { lambda_nm: Lanes(lambda_nm), place: Place::NONE, density: Lanes::ONE }
     }
 }
 

@@ -38,8 +38,6 @@ use solve::{Chooses, Seed};
 
 /// Most directions that are drawn to learn how probable a root is.
 const MOST_TRIALS: u32 = 1 << 16;
-/// The share of the vertices behind a diffuse one from which a connection is made.
-const MADE_INDIRECTLY: f64 = 0.25;
 /// Light that is weaker than this, of what the lamp would bring from as far away without a chain, gets trials in proportion to its strength.
 const WORTH_TRIALS: f64 = 0.05;
 /// The number of the set that is of a connection as a whole, and of the first that draws a direction. Those before are of the chain's vertices.
@@ -78,7 +76,9 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         if let Some(connections) = world.specular_connections {
             let first = sampler.connection_set(self.vertex);
             let numbers = Numbers { first, further: sampler.connection_numbers(self.vertex) };
+            let before = counters.rays + counters.shadow_rays;
             self.connect_by(world, connections, vertex, numbers, counters, observer);
+            observer.connection(self.is_indirect(), counters.rays + counters.shadow_rays - before);
         }
     }
 
@@ -98,7 +98,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         }
         let [u_made, u_length, u_kept, _] = numbers.further.set(CONNECTION_SET);
         // What a path sees directly is seen best.
-        let made = if self.is_indirect() { MADE_INDIRECTLY } else { 1.0 };
+        let made = connections.shares[usize::from(self.is_indirect())];
         if u_made >= made {
             return;
         }
