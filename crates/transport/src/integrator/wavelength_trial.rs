@@ -67,12 +67,16 @@ struct Region {
     halves: [Half; 2],
     xyz: [f64; 3],
     count: f64,
+    rays: u64,
 }
 
 /// What the samples of all regions came to.
 pub(crate) struct WavelengthTrial {
     regions: Regions,
     of_region: Vec<Region>,
+    /// Rays of all kinds that were cast, and paths.
+    rays: u64,
+    paths: u64,
 }
 
 /// A trial by one kernel: this many samples in each region, evenly spread, with random numbers of a seed.
@@ -85,7 +89,7 @@ pub(crate) fn try_wavelengths<M: WavelengthModel<N>, P: Polarisation<N>, const N
     let mut tracer = Tracer::new(prepared);
     tracer.seed = seed;
     let of_region = (0..regions.count()).into_par_iter().map(|number| {
-        let mut region = Region { halves: [Half::NOTHING; 2], xyz: [0.0; 3], count: 0.0 };
+        let mut region = Region { halves: [Half::NOTHING; 2], xyz: [0.0; 3], count: 0.0, rays: 0 };
         let pixels = pixels_of(prepared, &regions, number);
         for k in 0..samples {
             // Pixels take turns; of very many, some are left out, evenly.
@@ -93,6 +97,7 @@ pub(crate) fn try_wavelengths<M: WavelengthModel<N>, P: Polarisation<N>, const N
             let (x, y) = pixels.at(pixel % pixels.area);
             let mut counters = Counters::default();
             let path = tracer.sample::<M, P, N>(x, y, pixel / pixels.area, &mut counters, &mut ());
+            region.rays += counters.rays + counters.shadow_rays;
             let received = path.received();
             let xyz = M::to_xyz(prepared, &received.wavelengths, received.radiance);
             let square: f64 = xyz.iter().map(|v| v * v).sum();
@@ -111,7 +116,9 @@ pub(crate) fn try_wavelengths<M: WavelengthModel<N>, P: Polarisation<N>, const N
         region
     });
     // In the order of the regions, whichever thread they are tried by.
-    WavelengthTrial { regions, of_region: of_region.collect() }
+    let of_region: Vec<Region> = of_region.collect();
+    let rays = of_region.iter().map(|region| region.rays).sum();
+    WavelengthTrial { regions, rays, paths: of_region.len() as u64 * u64::from(samples), of_region }
 }
 
 /// The pixels of a region.
@@ -136,6 +143,11 @@ fn pixels_of(prepared: &Prepared, regions: &Regions, number: usize) -> Pixels {
 }
 
 impl WavelengthTrial {
+    /// Rays of all kinds of one path, in the mean.
+    pub(crate) fn rays_of_path(&self) -> f64 {
+        self.rays as f64 / self.paths as f64
+    }
+
     /// The densities that this teaches, if they are worth it.
     pub(crate) fn guide(&self) -> Option<WavelengthGuide> {
         let around: Vec<Region> = (0..self.of_region.len()).map(|number| self.around(number)).collect();
@@ -176,7 +188,7 @@ impl WavelengthTrial {
 
     /// What the samples about a region came to.
     fn around(&self, number: usize) -> Region {
-        let mut sum = Region { halves: [Half::NOTHING; 2], xyz: [0.0; 3], count: 0.0 };
+        let mut sum = Region { halves: [Half::NOTHING; 2], xyz: [0.0; 3], count: 0.0, rays: 0 };
         for (near, weight) in self.near(number) {
             let region = &self.of_region[near];
             (0..2).for_each(|half| sum.halves[half].add(&region.halves[half], weight));

@@ -29,6 +29,8 @@ const SAMPLES_OF_REGION: u32 = 512;
 /// The same of a first trial, which says whether the other is worth its time.
 const FIRST_REGIONS: u32 = 256;
 const FIRST_SAMPLES: u32 = 256;
+/// Rays that the other may take, about: some seconds at most.
+const MOST_RAYS: f64 = (1 << 23) as f64;
 /// Fewest pixels of a region's side.
 const SIDE: u32 = 4;
 
@@ -87,12 +89,14 @@ impl Prepared {
         if !called_for || film.bands.is_some() || self.path_reuse().is_some() || !self.receivers.is_empty() {
             return;
         }
-        let learned = |most: u32, samples: u32| {
-            let regions = Regions::new(film.width, film.height, SIDE, most);
-            (self.kernel().try_wavelengths)(self, seed, regions, samples).guide()
-        };
-        let guide = learned(FIRST_REGIONS, FIRST_SAMPLES).and_then(|_| learned(REGIONS, SAMPLES_OF_REGION));
-        self.wavelength_guide = guide;
+        let regions = |most: u32| Regions::new(film.width, film.height, SIDE, most);
+        let try_it = |regions, samples| (self.kernel().try_wavelengths)(self, seed, regions, samples);
+        let first = try_it(regions(FIRST_REGIONS), FIRST_SAMPLES);
+        if first.guide().is_some() {
+            let regions = regions(REGIONS);
+            let affordable = MOST_RAYS / (regions.count() as f64 * first.rays_of_path());
+            self.wavelength_guide = try_it(regions, SAMPLES_OF_REGION.min(affordable as u32)).guide();
+        }
     }
 
     /// Lets shadow rays go through glass where that lowers the variance by more than it lengthens the time.
