@@ -310,6 +310,13 @@ pub(super) const COMMANDS: &[(&str, &[Named])] = &[
                 Script("docs/mitsuba-verify.py"),
             ),
             named(
+                "cycles-verify",
+                "TRUTHS PICTURES [OPTIONS]",
+                "holds Blender's Cycles to the oracle's truths; needs bpy",
+                "4 min",
+                Script("docs/cycles-verify.py"),
+            ),
+            named(
                 "pbrt-twins",
                 "[OPTIONS] [NAME …]",
                 "scenes of pbrt by etalon against the same of Mitsuba by Mitsuba 3",
