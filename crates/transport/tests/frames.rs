@@ -70,6 +70,47 @@ fn placed(prepared: &Prepared) -> Vec<Arc<Geometry>> {
     all
 }
 
+/// A strip behind a prism, of which a camera that turns sees the spectrum, and a lamp at a point.
+fn spectrum() -> Scene {
+    let text = json!({
+        "etalon": 1,
+        "camera": {"type": "perspective", "position_m": [0, 0.5, 3], "look_at_m": [0, 0.5, 0], "vertical_fov_deg": 40, "shutter_s": [0, 0.02],
+            "keyframes": [{"time_s": 0}, {"time_s": 2, "transform": [{"rotate": {"axis": [0, 1, 0], "angle_deg": 60}}]}]},
+        "film": {"width": 32, "height": 24},
+        "objects": [
+            {"shape": {"type": "disk", "normal": [0, 1, 0], "radius_m": 3}, "material": {"type": "lambert", "reflectance": 0.5}},
+            {"shape": {"type": "mesh",
+                "vertices_m": [[-0.6, 0, 0.3], [0.6, 0, 0.3], [0, 0, -0.7], [-0.6, 1, 0.3], [0.6, 1, 0.3], [0, 1, -0.7]],
+                "triangles": [[0, 2, 1], [3, 4, 5], [0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4], [2, 0, 3], [2, 3, 5]]},
+                "material": {"type": "dielectric", "interior": "N-SF11"}},
+            {"shape": {"type": "parallelogram", "origin_m": [-2.5, 0, -1], "u_m": [0.03, 0, 0.03], "v_m": [0, 1, 0]},
+                "material": {"type": "black"}, "emission": {"radiance": 40, "sides": "both"}}
+        ],
+        "lights": [{"type": "point", "position_m": [1, 2, 1], "intensity": 1}],
+        "integrator": {"spp": 4, "seed": 3}
+    });
+    etalon_scene::parse(&text.to_string(), "test").unwrap_or_else(|errors| panic!("{errors}")).0
+}
+
+/// Each trial depends on what the trials before it have decided, and none may depend on what was decided for an earlier frame.
+#[test]
+fn what_trials_have_decided_for_a_frame_does_not_last() {
+    let study = Study::default();
+    let mut scene = spectrum();
+    let (mut earlier, mut decided) = (None, Vec::new());
+    for opens_s in [0.0, 0.6, 1.2, 1.8] {
+        scene.set_shutter([opens_s, opens_s + 0.02]);
+        let frame = prepare_frame(&scene, &study, earlier.take()).unwrap();
+        let alone = prepare_study(&scene, &study).unwrap();
+        assert!(film(&frame).pixels().eq(film(&alone).pixels()), "at {opens_s} s");
+        assert_eq!(frame.connection_shares(), alone.connection_shares());
+        assert_eq!(frame.guided_wavelengths(), alone.guided_wavelengths());
+        decided.push((frame.connection_shares(), frame.guided_wavelengths()));
+        earlier = Some(frame);
+    }
+    assert!(decided.iter().any(|other| *other != decided[0]), "all frames are alike: {decided:?}");
+}
+
 #[test]
 fn a_frame_after_others_has_the_bits_that_it_has_alone() {
     let study = Study::default();

@@ -46,7 +46,7 @@ struct ExplainJson<'a> {
     /// The largest share that is drawn toward images of lamps in smooth balls, and how many these are; 0 where that does not pay.
     specular_image_share: f64,
     specular_light_images: usize,
-    /// Shares of the vertices from which specular connections are made: of those that the camera sees, and of others.
+    /// Shares of the vertices from which specular connections are made: of those behind the camera, a mirror or glass, and of others.
     #[serde(skip_serializing_if = "Option::is_none")]
     connection_shares: Option<[f64; 2]>,
     /// Regions of the picture that draw wavelengths by what they bring there, and all regions; 0 and 0 where that does not pay.
@@ -129,12 +129,15 @@ fn describe(prepared: &Prepared, costs: &[Cost]) -> String {
     }
     if let Some([direct, indirect]) = prepared.connection_shares() {
         let percent = |share: f64| format!("{:.0} %", 100.0 * share);
-        let what =
-            format!("from {} of the vertices that the camera sees, {} of others", percent(direct), percent(indirect));
+        let what = format!(
+            "from {} of the vertices behind the camera, a mirror or glass, {} of others",
+            percent(direct),
+            percent(indirect)
+        );
         lines.push(format!("{:<20} {what}", "connections"));
     }
     if let (guided @ 1.., regions) = prepared.guided_wavelengths() {
-        let what = format!("of a hero more often where it brings light, in {guided} of {regions} regions");
+        let what = format!("drawn more often where they bring light, in {guided} of {regions} regions");
         lines.push(format!("{:<20} {what}: a trial found less noise", "wavelengths"));
     }
     for lost in &plan.approximations {

@@ -37,12 +37,12 @@ pub(crate) struct SpecularConnections {
     bodies: Vec<GuidedTarget>,
     /// A distance from any of them beyond which there is nothing.
     reach: f64,
-    /// The share of the vertices from which connections are made: of those that the camera sees directly or by way of mirrors and glass alone, and
-    /// of those behind a vertex that scatters. A trial may have it otherwise.
+    /// The share of the vertices from which connections are made: of those to which the path has come from the camera or by way of a mirror or
+    /// glass, and of those to which it has come straight from a vertex that scatters. A trial may have it otherwise.
     pub(crate) shares: [f64; 2],
 }
 
-/// The shares without a trial. What a path sees directly is seen best.
+/// The shares without a trial. What the camera sees directly is seen best.
 pub(crate) const USUAL_SHARES: [f64; 2] = [1.0, 0.25];
 
 impl SpecularConnections {

@@ -14,10 +14,12 @@ use crate::polarisation::Polarisation;
 use crate::scene::prepare::Prepared;
 use etalon_optics::Lanes;
 
-/// Shares of the vertices that the camera sees directly, or by way of mirrors and glass alone; and of those behind a vertex that scatters. What a
-/// path sees directly is seen best, and a trial may miss what is rare: hence the least of them.
+/// Shares of the vertices to which a path has come from the camera or by way of a mirror or glass; and of those to which it has come straight from
+/// a vertex that scatters. What the camera sees directly is seen best, and a trial may miss what is rare: hence the least of them.
 const DIRECT: [f64; 3] = [1.0, 0.5, 0.25];
 const INDIRECT: [f64; 6] = [1.0, 0.5, 0.25, 0.125, 0.0625, 0.03125];
+/// Least share of the variance that is believed to be left.
+const LEAST_LEFT: f64 = 0.01;
 /// What other shares must leave of variance times rays.
 const WORTH_IT: f64 = 0.9;
 
@@ -110,7 +112,8 @@ impl ConnectionTrial {
                 variance += self.squares[kind] * (1.0 / ratio - 1.0);
                 rays += self.of_connections[kind] * (ratio - 1.0);
             }
-            variance * rays
+            // The variance that was measured is not exactly the sum of its parts, and must not become negative.
+            variance.max(LEAST_LEFT * self.variance) * rays
         };
         let usual = product(USUAL);
         let all = DIRECT.into_iter().flat_map(|direct| INDIRECT.map(|indirect| [direct, indirect]));

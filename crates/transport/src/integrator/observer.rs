@@ -34,7 +34,7 @@ pub(crate) trait Observer<const N: usize> {
     fn light(&mut self, _vertex: u32, _how: Found, _radiance: Lanes<f64, N>) {}
     /// A direction is drawn from a mixture.
     fn direction(&mut self, _mixture: &Mixture) {}
-    /// A specular connection was tried, from a vertex behind one that scatters or not, and took this many rays.
+    /// A specular connection was tried, from a vertex to which the path has come straight from one that scatters or not, and took this many rays.
     fn connection(&mut self, _indirect: bool, _rays: u64) {}
     /// The path ends.
     fn end(&mut self, _end: End) {}

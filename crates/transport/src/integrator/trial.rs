@@ -36,7 +36,7 @@ impl Tried {
         // Of a small picture a quarter, lest the trial cost more than it.
         let tried = PIXELS.min(pixels.div_ceil(4));
         let step = (pixels as f64 / tried as f64).sqrt().ceil() as u32;
-        let along = |end: u32| (step / 2..end).step_by(step as usize).collect();
+        let along = |end: u32| ((step / 2).min(end - 1)..end).step_by(step as usize).collect();
         Self { columns: along(film.width), rows: along(film.height) }
     }
 

@@ -2,7 +2,7 @@
 
 use crate::guiding::{GuidedBy, USUAL_SHARES};
 use crate::integrator::trial::{SHARES, TRIED};
-use crate::plan::{EffectName, Study};
+use crate::plan::{EffectName, LaneModel, Study};
 use crate::sampler::mix;
 use crate::scene::coincidence;
 use crate::scene::prepare::{Prepared, build};
@@ -23,16 +23,21 @@ const LENSES_MAX_COST_RATIO: f64 = 0.9;
 const REFRACTED_RAY: f64 = 2.0;
 
 /// Regions of a picture that may have wavelengths of their own, about as many at most, and samples of each that they are learned from. A picture
-/// at video size then has regions of 22 pixels.
+/// of 1920 × 1080 pixels has squares of 23 × 23.
 const REGIONS: u32 = 4096;
 const SAMPLES_OF_REGION: u32 = 512;
 /// The same of a first trial, which says whether the other is worth its time.
 const FIRST_REGIONS: u32 = 256;
 const FIRST_SAMPLES: u32 = 256;
-/// Rays that the other may take, about: some seconds at most.
+/// Regions and samples of each by which it is learned how long paths are.
+const FEW_REGIONS: u32 = 64;
+const FEW_SAMPLES: u32 = 4;
+/// Samples of a region from which something can be learned.
+const FEWEST_SAMPLES: u32 = 64;
+/// Rays that a trial may take, about: some seconds at most.
 const MOST_RAYS: f64 = (1 << 23) as f64;
 /// Fewest pixels of a region's side.
-const SIDE: u32 = 4;
+const SIDE: u32 = 8;
 
 /// Prepares a scene: its frame, the shapes and the accelerator in it, the table of lights and the plan; and tunes it.
 pub fn prepare(scene: &Scene) -> Result<Prepared, PrepareError> {
@@ -62,8 +67,10 @@ impl Prepared {
     /// Tries, with random numbers of a seed, whether shadow rays are to go through glass, what directions are to be guided by,
     /// from how many vertices specular connections are to be made, and which wavelengths are to be drawn where.
     pub fn tune(&mut self, seed: u64) {
-        // An earlier frame may have found otherwise.
+        // An earlier frame may have found otherwise, and each trial depends on what those before it have found.
         (self.guided_targets.guided_by, self.guided_targets.share) = (GuidedBy::Nothing, 0.0);
+        self.set_connection_shares(USUAL_SHARES);
+        self.wavelength_guide = None;
         self.tune_refracted_shadows(seed);
         self.tune_guided_targets(seed);
         self.tune_connections(seed);
@@ -72,30 +79,43 @@ impl Prepared {
 
     /// Makes specular connections from the share of the vertices that leaves the least variance for the rays.
     fn tune_connections(&mut self, seed: u64) {
-        if let Some(connections) = &mut self.specular_connections {
-            connections.shares = USUAL_SHARES;
+        if self.specular_connections.is_some() {
             let shares = (self.kernel().try_connections)(self, seed).shares();
-            self.specular_connections.iter_mut().for_each(|connections| connections.shares = shares);
+            self.set_connection_shares(shares);
         }
+    }
+
+    fn set_connection_shares(&mut self, shares: [f64; 2]) {
+        self.specular_connections.iter_mut().for_each(|connections| connections.shares = shares);
     }
 
     /// Learns which wavelengths bring light in each region of the picture, where dispersion makes that differ.
     ///
     /// Bands are means of all samples of a wavelength alike, and pixels that share paths share wavelengths: they do without.
     fn tune_wavelengths(&mut self, seed: u64) {
-        self.wavelength_guide = None;
-        let called_for = self.plan().runs(EffectName::Dispersion) && !self.plan().forces(EffectName::Dispersion);
+        let plan = self.plan();
+        // A forced effect must leave every bit as it is, and channels have no wavelengths.
+        let called_for = plan.runs(EffectName::Dispersion)
+            && !plan.forces(EffectName::Dispersion)
+            && plan.lane_model == LaneModel::Hero;
         let film = &self.scene.film;
         if !called_for || film.bands.is_some() || self.path_reuse().is_some() || !self.receivers.is_empty() {
             return;
         }
         let regions = |most: u32| Regions::new(film.width, film.height, SIDE, most);
         let try_it = |regions, samples| (self.kernel().try_wavelengths)(self, seed, regions, samples);
-        let first = try_it(regions(FIRST_REGIONS), FIRST_SAMPLES);
-        if first.guide().is_some() {
-            let regions = regions(REGIONS);
-            let affordable = MOST_RAYS / (regions.count() as f64 * first.rays_of_path());
-            self.wavelength_guide = try_it(regions, SAMPLES_OF_REGION.min(affordable as u32)).guide();
+        // Few paths say how many a trial may take.
+        let few = regions(FEW_REGIONS);
+        let rays_of_path = try_it(few, FEW_SAMPLES).rays_of_path();
+        let affordable =
+            |regions: Regions, samples: u32| samples.min((MOST_RAYS / (regions.count() as f64 * rays_of_path)) as u32);
+        let (coarse, fine) = (regions(FIRST_REGIONS), regions(REGIONS));
+        let samples = affordable(fine, SAMPLES_OF_REGION);
+        if samples < FEWEST_SAMPLES {
+            return;
+        }
+        if coarse == fine || try_it(coarse, affordable(coarse, FIRST_SAMPLES)).guide().is_some() {
+            self.wavelength_guide = try_it(fine, samples).guide();
         }
     }
 

@@ -76,14 +76,27 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         if let Some(connections) = world.specular_connections {
             let first = sampler.connection_set(self.vertex);
             let numbers = Numbers { first, further: sampler.connection_numbers(self.vertex) };
-            let before = counters.rays + counters.shadow_rays;
             self.connect_by(world, connections, vertex, numbers, counters, observer);
-            observer.connection(self.is_indirect(), counters.rays + counters.shadow_rays - before);
         }
     }
 
-    #[inline(never)]
+    /// Tries one connection by some numbers.
     fn connect_by(
+        &mut self,
+        world: &World<'a>,
+        connections: &SpecularConnections,
+        vertex: &impl Vertex<'a>,
+        numbers: Numbers,
+        counters: &mut Counters,
+        observer: &mut impl Observer<N>,
+    ) {
+        let before = counters.rays + counters.shadow_rays;
+        self.search(world, connections, vertex, numbers, counters, observer);
+        observer.connection(self.is_indirect(), counters.rays + counters.shadow_rays - before);
+    }
+
+    #[inline(never)]
+    fn search(
         &mut self,
         world: &World<'a>,
         connections: &SpecularConnections,
@@ -97,7 +110,6 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             return;
         }
         let [u_made, u_length, u_kept, _] = numbers.further.set(CONNECTION_SET);
-        // What a path sees directly is seen best.
         let made = connections.shares[usize::from(self.is_indirect())];
         if u_made >= made {
             return;
