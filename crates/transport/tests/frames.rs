@@ -87,7 +87,7 @@ fn spectrum() -> Scene {
                 "material": {"type": "black"}, "emission": {"radiance": 40, "sides": "both"}}
         ],
         "lights": [{"type": "point", "position_m": [1, 2, 1], "intensity": 1}],
-        "integrator": {"spp": 4, "seed": 3}
+        "integrator": {"spp": 4, "seed": 3, "wavelength_range_nm": [370, 830]}
     });
     etalon_scene::parse(&text.to_string(), "test").unwrap_or_else(|errors| panic!("{errors}")).0
 }
