@@ -49,7 +49,7 @@ struct ExplainJson<'a> {
     /// Shares of the vertices from which specular connections are made: of those behind the camera, a mirror or glass, and of others.
     #[serde(skip_serializing_if = "Option::is_none")]
     connection_shares: Option<[f64; 2]>,
-    /// Regions of the picture that draw wavelengths by what they bring there, and all regions; 0 and 0 where that does not pay.
+    /// How many regions of the picture draw some wavelengths more often, and how many there are. Both are 0 where that does not pay.
     guided_wavelengths: (usize, usize),
     /// What effects that are off would have cost, if it was measured.
     #[serde(skip_serializing_if = "Vec::is_empty")]

@@ -37,8 +37,8 @@ pub(crate) struct SpecularConnections {
     bodies: Vec<GuidedTarget>,
     /// A distance from any of them beyond which there is nothing.
     reach: f64,
-    /// The share of the vertices from which connections are made: of those to which the path has come from the camera or by way of a mirror or
-    /// glass, and of those to which it has come straight from a vertex that scatters. A trial may have it otherwise.
+    /// The shares of the vertices from which connections are made. The first is of vertices to which the path has come from the camera or by way
+    /// of a mirror or glass. The second is of those to which it has come straight from a vertex that scatters. A trial chooses them.
     pub(crate) shares: [f64; 2],
 }
 

@@ -14,8 +14,8 @@ use crate::polarisation::Polarisation;
 use crate::scene::prepare::Prepared;
 use etalon_optics::Lanes;
 
-/// Shares of the vertices to which a path has come from the camera or by way of a mirror or glass; and of those to which it has come straight from
-/// a vertex that scatters. What the camera sees directly is seen best, and a trial may miss what is rare: hence the least of them.
+/// The shares that are tried: see [`SpecularConnections::shares`](crate::guiding::SpecularConnections). What the camera sees directly is seen
+/// best, and a trial may miss what is rare. Hence the least of them.
 const DIRECT: [f64; 3] = [1.0, 0.5, 0.25];
 const INDIRECT: [f64; 6] = [1.0, 0.5, 0.25, 0.125, 0.0625, 0.03125];
 /// Least share of the variance that is believed to be left.

@@ -12,6 +12,7 @@ use crate::sampler::mix;
 use crate::scene::prepare::Prepared;
 use crate::wavelength::guide::{GROUPS, HeroDensity, Regions, WavelengthGuide};
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Share of the variance that may be left at most in a region. A density of its own costs no time, but disturbs how evenly the samples of a
 /// pixel are spread.
@@ -41,9 +42,7 @@ impl Half {
     /// The root of the mean square of each group, where neighbouring groups count too.
     fn density(&self) -> Option<HeroDensity> {
         let around = |of: &[f64; GROUPS], group: usize| -> f64 {
-            // Both ends of the spectrum have one neighbour.
-            let groups = (group.max(1) - 1)..(group + 2).min(GROUPS);
-            groups.map(|near| NEAR[near + 1 - group] * of[near]).sum()
+            neighbours(group, GROUPS).map(|near| NEAR[near + 1 - group] * of[near]).sum()
         };
         HeroDensity::new(&std::array::from_fn(|group| {
             let count = around(&self.count, group);
@@ -70,6 +69,15 @@ struct Region {
     rays: u64,
 }
 
+impl Region {
+    const NOTHING: Self = Self { halves: [Half::NOTHING; 2], xyz: [0.0; 3], count: 0.0, rays: 0 };
+}
+
+/// A place of a row of so many and the places beside it: those at the ends have one neighbour.
+fn neighbours(at: usize, end: usize) -> Range<usize> {
+    (at.max(1) - 1)..(at + 2).min(end)
+}
+
 /// What the samples of all regions came to.
 pub(crate) struct WavelengthTrial {
     regions: Regions,
@@ -89,7 +97,7 @@ pub(crate) fn try_wavelengths<M: WavelengthModel<N>, P: Polarisation<N>, const N
     let mut tracer = Tracer::new(prepared);
     tracer.seed = seed;
     let of_region = (0..regions.count()).into_par_iter().map(|number| {
-        let mut region = Region { halves: [Half::NOTHING; 2], xyz: [0.0; 3], count: 0.0, rays: 0 };
+        let mut region = Region::NOTHING;
         let pixels = pixels_of(prepared, &regions, number);
         for k in 0..samples {
             // Pixels take turns; of very many, some are left out, evenly.
@@ -180,15 +188,14 @@ impl WavelengthTrial {
     fn near(&self, number: usize) -> impl Iterator<Item = (usize, f64)> + use<'_> {
         let (columns, rows) = (self.regions.columns as usize, self.regions.rows as usize);
         let (column, row) = (number % columns, number / columns);
-        let range = |at: usize, end: usize| (at.max(1) - 1)..(at + 2).min(end);
-        range(row, rows).flat_map(move |y| {
-            range(column, columns).map(move |x| (y * columns + x, NEAR[y + 1 - row] * NEAR[x + 1 - column]))
+        neighbours(row, rows).flat_map(move |y| {
+            neighbours(column, columns).map(move |x| (y * columns + x, NEAR[y + 1 - row] * NEAR[x + 1 - column]))
         })
     }
 
     /// What the samples about a region came to.
     fn around(&self, number: usize) -> Region {
-        let mut sum = Region { halves: [Half::NOTHING; 2], xyz: [0.0; 3], count: 0.0, rays: 0 };
+        let mut sum = Region::NOTHING;
         for (near, weight) in self.near(number) {
             let region = &self.of_region[near];
             (0..2).for_each(|half| sum.halves[half].add(&region.halves[half], weight));

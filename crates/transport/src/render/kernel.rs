@@ -34,7 +34,7 @@ pub(crate) struct Kernel {
     pub try_guided_targets: fn(&Prepared, u64) -> Trial,
     /// Tells what specular connections bring and take, by a trial with random numbers of a seed.
     pub try_connections: fn(&Prepared, u64) -> ConnectionTrial,
-    /// Tells which wavelengths bring light in each region, by so many samples there with random numbers of a seed.
+    /// Tells which wavelengths bring light in each region. Takes the seed of its random numbers, and the samples of each region.
     pub try_wavelengths: fn(&Prepared, u64, Regions, u32) -> WavelengthTrial,
 }
 

@@ -64,8 +64,8 @@ pub fn prepare_frame(scene: &Scene, study: &Study, earlier: Option<Prepared>) ->
 }
 
 impl Prepared {
-    /// Tries, with random numbers of a seed, whether shadow rays are to go through glass, what directions are to be guided by,
-    /// from how many vertices specular connections are to be made, and which wavelengths are to be drawn where.
+    /// Decides by trials, with random numbers of a seed: whether shadow rays go through glass, then what directions are guided by. Then from how
+    /// many vertices specular connections are made, and which wavelengths are drawn where.
     pub fn tune(&mut self, seed: u64) {
         // An earlier frame may have found otherwise, and each trial depends on what those before it have found.
         (self.guided_targets.guided_by, self.guided_targets.share) = (GuidedBy::Nothing, 0.0);
@@ -91,7 +91,7 @@ impl Prepared {
 
     /// Learns which wavelengths bring light in each region of the picture, where dispersion makes that differ.
     ///
-    /// Bands are means of all samples of a wavelength alike, and pixels that share paths share wavelengths: they do without.
+    /// Bands do without, since each is the plain mean of its samples. So do pixels that share paths, since these share wavelengths.
     fn tune_wavelengths(&mut self, seed: u64) {
         let plan = self.plan();
         // A forced effect must leave every bit as it is, and channels have no wavelengths.

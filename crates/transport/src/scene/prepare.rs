@@ -388,8 +388,8 @@ impl Prepared {
         self.wavelength_guide.as_ref().map_or((0, 0), |guide| (guide.guided(), guide.densities.len()))
     }
 
-    /// The shares of the vertices from which specular connections are made: of those to which a path comes from the camera or by way
-    /// of a mirror or glass, and of those to which it comes straight from a vertex that scatters. `None` where there are none.
+    /// The shares of the vertices from which specular connections are made; `None` where there are none. The first is of vertices to which a
+    /// path comes from the camera or by way of a mirror or glass. The second is of those to which it comes straight from a vertex that scatters.
     pub fn connection_shares(&self) -> Option<[f64; 2]> {
         self.specular_connections.as_ref().map(|connections| connections.shares)
     }

@@ -14,9 +14,9 @@ use etalon_optics::Lanes;
 /// Groups of cells, each a stretch of the same probability: the hero's is drawn by the region. A multiple of the lanes of a path.
 pub(crate) const GROUPS: usize = 128;
 /// Share of the heroes that is drawn as everywhere (a defensive mixture): so no sample is worth more than 1/0.3 of what it would be otherwise.
-pub(crate) const EVEN: f64 = 0.3;
+pub(crate) const UNIFORM_SHARE: f64 = 0.3;
 /// Just below 1, so that a group and this part of it are still in the group after rounding.
-const LAST: f64 = 1.0 - 1.0 / (1_u64 << 40) as f64;
+const BELOW_ONE: f64 = 1.0 - 1.0 / (1_u64 << 40) as f64;
 
 /// Squares of pixels that cover the film, row by row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,10 +48,12 @@ impl Regions {
 
 /// The probability of all groups before each, and of all: of one region.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct HeroDensity(Box<[f64; GROUPS + 1]>);
+pub(crate) struct HeroDensity {
+    cumulative: Box<[f64; GROUPS + 1]>,
+}
 
 impl HeroDensity {
-    /// In proportion to `wanted`, beside [`EVEN`]; `None` if that is nothing or no number.
+    /// In proportion to `wanted`, beside [`UNIFORM_SHARE`]; `None` if that is nothing or no number.
     pub(crate) fn new(wanted: &[f64; GROUPS]) -> Option<Self> {
         let sum: f64 = wanted.iter().sum();
         if !(sum > 0.0 && sum.is_finite()) {
@@ -59,24 +61,25 @@ impl HeroDensity {
         }
         let mut cumulative = Box::new([0.0; GROUPS + 1]);
         for (group, own) in wanted.iter().enumerate() {
-            cumulative[group + 1] = cumulative[group] + EVEN / GROUPS as f64 + (1.0 - EVEN) * (own / sum);
+            cumulative[group + 1] =
+                cumulative[group] + UNIFORM_SHARE / GROUPS as f64 + (1.0 - UNIFORM_SHARE) * (own / sum);
         }
         let all = cumulative[GROUPS];
         cumulative.iter_mut().for_each(|probability| *probability /= all);
-        Some(Self(cumulative))
+        Some(Self { cumulative })
     }
 
     /// Of the hero in a group, over that of an even one.
     pub(crate) fn of_group(&self, group: usize) -> f64 {
-        (self.0[group + 1] - self.0[group]) * GROUPS as f64
+        (self.cumulative[group + 1] - self.cumulative[group]) * GROUPS as f64
     }
 
     /// The group of a number in [0, 1), and the number that draws the same place of an even density.
     fn draw(&self, u: f64) -> (usize, f64) {
         // The first is 0 and the last is 1.
-        let group = self.0.partition_point(|&before| before <= u) - 1;
-        let (before, after) = (self.0[group], self.0[group + 1]);
-        let part = ((u - before) / (after - before)).min(LAST);
+        let group = self.cumulative.partition_point(|&before| before <= u) - 1;
+        let (before, after) = (self.cumulative[group], self.cumulative[group + 1]);
+        let part = ((u - before) / (after - before)).min(BELOW_ONE);
         (group, (group as f64 + part) / GROUPS as f64)
     }
 }
@@ -144,7 +147,7 @@ mod tests {
             let expected = density.of_group(group) / GROUPS as f64 * f64::from(n);
             // One tooth of the comb at each end.
             assert!((f64::from(count) - expected).abs() <= 2.0, "{group}: {count} instead of {expected}");
-            assert!(density.of_group(group) >= 0.999 * EVEN);
+            assert!(density.of_group(group) >= 0.999 * UNIFORM_SHARE);
         }
         let (group, u) = density.draw(1.0_f64.next_down());
         assert!(group == GROUPS - 1 && u < 1.0);
