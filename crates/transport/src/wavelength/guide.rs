@@ -116,6 +116,7 @@ impl WavelengthGuide {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::integrator::wavelength_lanes::{Hero, WavelengthModel};
 
     /// A density with a peak, over all wavelengths that are drawn.
     fn peaked() -> HeroDensity {
@@ -171,7 +172,9 @@ mod tests {
                     false => distribution.sample_lanes(u),
                 };
                 let followed = if alone { Lanes::ONE.hero_only() } else { Lanes::ONE };
-                let weight = 8.0 / (w.density * followed).sum();
+                let mut lanes = Hero::<8>::start(&w);
+                lanes.follow(followed);
+                let weight = lanes.weight();
                 let radiance = Lanes::from_fn(|lane| spectrum(w.lambda_nm[lane]) * followed[lane] * weight);
                 let xyz = distribution.to_xyz(&w, radiance);
                 (0..3).for_each(|c| sum[c] += xyz[c] / f64::from(n));
