@@ -89,6 +89,8 @@ pub(crate) struct Hero<const N: usize> {
     density: Lanes<f64, N>,
     /// Whether lanes have had densities of their own. Until then all are exactly 1.
     parted: bool,
+    /// Whether heroes are drawn otherwise than elsewhere in the region of the path's pixel.
+    guided: bool,
 }
 
 impl WavelengthModel<1> for OneLane {
@@ -174,7 +176,8 @@ impl<const N: usize> WavelengthModel<N> for Hero<N> {
 
     #[inline(always)]
     fn start(wavelengths: &Wavelengths<N>) -> Self {
-        Self { density: wavelengths.density, parted: wavelengths.density != Lanes::ONE }
+        let guided = wavelengths.density != Lanes::ONE;
+        Self { density: wavelengths.density, parted: guided, guided }
     }
 
     #[inline(always)]
@@ -202,7 +205,7 @@ impl<const N: usize> WavelengthModel<N> for Hero<N> {
 
     #[inline(always)]
     fn weight_of_even(&self, wavelengths: &Wavelengths<N>) -> f64 {
-        if wavelengths.density == Lanes::ONE {
+        if !self.guided {
             return self.weight();
         }
         let of_lane = |lane: usize| self.density[lane] / wavelengths.density[lane];
