@@ -6,6 +6,7 @@
 
 mod compound_lens;
 mod exit_pupil;
+mod projection;
 
 pub(crate) use compound_lens::PreparedLens;
 

@@ -8,6 +8,7 @@
 
 use super::{Cylinder, Disk, PlanarSampler, Sphere};
 use crate::Aabb;
+use crate::warp::uniform_sphere;
 use etalon_optics::Vec3;
 
 /// A shape that directions can be drawn toward, with what every draw asks of it.
@@ -69,6 +70,15 @@ impl ShapeSampler {
     #[inline]
     pub fn density(&self, from: Vec3<f64>, wi: Vec3<f64>) -> DirectionDensity {
         each!(self, shape => shape.density(from, wi))
+    }
+
+    /// A point of the shape for `u` in [0, 1)²; all are equally likely.
+    pub fn point(&self, u: [f64; 2]) -> Vec3<f64> {
+        match self {
+            Self::Sphere(sphere) => sphere.centre() + uniform_sphere(u) * sphere.radius(),
+            // Their points are uniform, wherever they are seen from.
+            _ => self.sample(Vec3::ZERO, u).point,
+        }
     }
 
     /// Area of one side, m².

@@ -55,6 +55,20 @@ impl FilterSampler {
         Self::Table((0..=CELLS).map(|i| invert(i as f64 / CELLS as f64)).collect())
     }
 
+    /// The density with which offsets are drawn at one, in pixels: what light at this distance from the centre of a pixel counts there.
+    pub fn density(&self, offset: f64) -> f64 {
+        match self {
+            Self::Box => f64::from((-0.5..0.5).contains(&offset)),
+            Self::Table(offsets) => {
+                let above = offsets.partition_point(|&edge| edge <= offset);
+                if above == 0 || above == offsets.len() {
+                    return 0.0;
+                }
+                1.0 / (CELLS as f64 * (offsets[above] - offsets[above - 1]))
+            }
+        }
+    }
+
     /// The offset in pixels for `u` in [0, 1).
     pub fn offset(&self, u: f64) -> f64 {
         match self {
@@ -71,6 +85,34 @@ impl FilterSampler {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// The share of the offsets between two is the integral of the density.
+    #[test]
+    fn as_many_offsets_are_drawn_as_the_density_says() {
+        for filter in [Filter::Box, Filter::Tent { radius_px: 1.5 }, Filter::Gaussian { sigma_px: 0.5 }] {
+            let sampler = FilterSampler::new(&filter);
+            let reach = FilterSampler::reach_px(&filter);
+            let steps = 20_000;
+            let width = 2.0 * reach / f64::from(steps);
+            let at = |step: i32| -reach + (f64::from(step) + 0.5) * width;
+            let mut drawn_below = 0.0;
+            for step in 0..steps {
+                drawn_below += sampler.density(at(step)) * width;
+                if step % 1000 == 999 {
+                    let edge = at(step) + 0.5 * width;
+                    let share = f64::from(
+                        (0..10_000).filter(|i| sampler.offset((f64::from(*i) + 0.5) / 1e4) < edge).count() as u32,
+                    ) / 1e4;
+                    // A ten thousandth of the offsets lies between two of those counted; a cell's end may lie within a step.
+                    assert!(
+                        (drawn_below - share).abs() < 1e-3,
+                        "{filter:?} below {edge}: {drawn_below} is not {share}"
+                    );
+                }
+            }
+            assert_eq!(sampler.density(reach * 1.001), 0.0);
+        }
+    }
 
     /// Second moments against the filters' own: box 1/12, tent r²/6, Gaussian cut at 3σ: σ²·0.973335…. The table's cells
     /// spread each moment by less than 1e-4.
