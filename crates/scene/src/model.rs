@@ -32,7 +32,9 @@ pub use emission::{Emission, EmissionSides};
 pub use environment::{EnvironmentImage, EnvironmentProjection};
 pub use film::{Bands, BandsError, Film, Filter, MOST_BANDS};
 pub use grating::{Grating, Grooves};
-pub use integrator::{Integrator, LightSampling, LightSelection, MOST_REPLICATES, PathReuse, SamplerKind};
+pub use integrator::{
+    Integrator, LightSampling, LightSelection, LightTracing, MOST_REPLICATES, PathReuse, SamplerKind,
+};
 pub use light::{Beam, BeamProfile, Light, LightCone, LightKind};
 pub use material::{
     FacetDistribution, FacetMasking, InternalReflection, LEAST_ALPHA, Material, MaterialKind, Metal, Microfacets,

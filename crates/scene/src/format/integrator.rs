@@ -2,7 +2,7 @@
 
 use super::spectrum::Wavelength;
 use crate::json::{Code, Nullable, Reader, Required, Spanned, Whole};
-use crate::model::{Integrator, LightSampling, LightSelection, MOST_REPLICATES, PathReuse, SamplerKind};
+use crate::model::{Integrator, LightSampling, LightSelection, LightTracing, MOST_REPLICATES, PathReuse, SamplerKind};
 
 crate::record! {
     /// How to integrate. The command line may override each key.
@@ -24,6 +24,8 @@ crate::record! {
         light_sampling: Required<LightSampling> = r#""mis""#,
         /// Which of several lights a shadow ray aims at.
         light_selection: Required<LightSelection> = r#""auto""#,
+        /// Whether what mirrors and glass throw on the scene is found by paths from the lamps.
+        light_tracing: Required<LightTracing> = r#""auto""#,
         /// First and last wavelength rendered, nm.
         wavelength_range_nm: Required<Spanned<[Wavelength; 2]>> = "[360, 830]",
         /// Which neighbouring pixels share paths.
@@ -54,6 +56,15 @@ crate::keywords!(LightSelection {
     "power" => Self::Power,
     /// By a tree over where they are and where they shine, for each point anew.
     "tree" => Self::Tree,
+});
+
+crate::keywords!(LightTracing {
+    /// If a trial before the picture finds less noise for the time.
+    "auto" => Self::Auto,
+    /// Never.
+    "never" => Self::Never,
+    /// Wherever light paths are possible.
+    "always" => Self::Always,
 });
 
 crate::keywords!(PathReuse {
@@ -110,6 +121,7 @@ pub(crate) fn integrator(form: &IntegratorForm, wavelength_range_nm: Option<[f64
         roulette: form.roulette?,
         light_sampling: form.light_sampling?,
         light_selection: form.light_selection?,
+        light_tracing: form.light_tracing?,
         wavelength_range_nm: wavelength_range_nm?,
         path_reuse: form.path_reuse?,
     })

@@ -218,6 +218,7 @@ pub const NEIGHBOURS: &[Neighbour] = &[
     key("maxbounces bounces", "max_depth"),
     key("rrdepth russianroulette", "roulette"),
     key("lightsampler lightsamplestrategy", "light_selection"),
+    key("lighttracer particletracer bidirectional", "light_tracing"),
     // Keys of objects, shapes and transforms.
     key("geometry mesh primitive", "shape"),
     key("bsdf shader", "material"),

@@ -19,6 +19,8 @@ pub struct Integrator {
     pub light_sampling: LightSampling,
     /// Which of several lights a shadow ray aims at.
     pub light_selection: LightSelection,
+    /// Whether light is followed from the lamps too.
+    pub light_tracing: LightTracing,
     /// Wavelengths rendered: the first and the last, nm.
     pub wavelength_range_nm: [f64; 2],
     /// Which neighbouring pixels share paths.
@@ -82,4 +84,15 @@ pub enum LightSelection {
     Power,
     /// By a tree over where they are and where they shine, for each point anew.
     Tree,
+}
+
+/// Whether what mirrors and glass throw on a scene is found by paths from the lamps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LightTracing {
+    /// Where a trial before the picture finds less noise for the time.
+    Auto,
+    /// Never.
+    Never,
+    /// Wherever they are possible.
+    Always,
 }

@@ -43,6 +43,7 @@ fn camera_film_and_integrator() {
             roulette: false,
             light_sampling: LightSampling::Light,
             light_selection: LightSelection::Power,
+            light_tracing: LightTracing::Never,
             wavelength_range_nm: [380.0, 780.0],
             path_reuse: PathReuse::Block4x2,
         }
@@ -63,6 +64,7 @@ fn defaults() {
             roulette: true,
             light_sampling: LightSampling::Mis,
             light_selection: LightSelection::Auto,
+            light_tracing: LightTracing::Auto,
             wavelength_range_nm: [360.0, 830.0],
             path_reuse: PathReuse::None,
         }
