@@ -4,7 +4,7 @@ use std::ops::Deref;
 
 use clap::parser::ValueSource;
 use clap::{ArgMatches, Args, Command, FromArgMatches, ValueEnum};
-use etalon_scene::{Bands, LightSampling, MOST_REPLICATES, PathReuse, SamplerKind, Scene};
+use etalon_scene::{Bands, LightSampling, LightTracing, MOST_REPLICATES, PathReuse, SamplerKind, Scene};
 use etalon_transport::{Carried, EffectName, PathLoop, Study};
 use miette::miette;
 
@@ -47,6 +47,9 @@ pub(crate) struct Settings {
     /// How paths find light.
     #[arg(long, value_enum, help_heading = SETTINGS)]
     light_sampling: Option<LightSamplingArg>,
+    /// Paths from the lamps, for what mirrors and smooth glass throw on the scene.
+    #[arg(long, value_enum, value_name = "WHEN", help_heading = SETTINGS)]
+    light_tracing: Option<LightTracingArg>,
     /// Blocks of neighbouring pixels that share paths. There is less noise, but the errors within a block are correlated.
     #[arg(long, value_enum, value_name = "BLOCK", help_heading = SETTINGS)]
     path_reuse: Option<PathReuseArg>,
@@ -72,7 +75,7 @@ pub(crate) struct Settings {
     /// Trace one path at a time, or many at once. Both give the same picture, bit for bit. Default: the faster one.
     #[arg(long = "loop", value_enum, value_name = "WHICH", help_heading = STUDY)]
     path_loop: Option<PathLoopArg>,
-    /// Try nothing before the picture: sample diffuse directions by the cosine, and wavelengths alike in every pixel.
+    /// Try nothing before the picture: sample diffuse directions by the cosine, wavelengths alike in every pixel, and light paths only if always.
     #[arg(long, help_heading = STUDY)]
     by_cosine: bool,
 }
@@ -139,6 +142,26 @@ enum LightSamplingArg {
 }
 
 #[derive(Clone, Copy, ValueEnum)]
+enum LightTracingArg {
+    /// If a trial before the picture finds less noise for the time.
+    Auto,
+    /// Never.
+    Never,
+    /// Wherever light paths are possible.
+    Always,
+}
+
+impl From<LightTracingArg> for LightTracing {
+    fn from(arg: LightTracingArg) -> Self {
+        match arg {
+            LightTracingArg::Auto => Self::Auto,
+            LightTracingArg::Never => Self::Never,
+            LightTracingArg::Always => Self::Always,
+        }
+    }
+}
+
+#[derive(Clone, Copy, ValueEnum)]
 enum CarryArg {
     /// One wavelength.
     OneWavelength,
@@ -193,6 +216,9 @@ impl Settings {
                 LightSamplingArg::Light => LightSampling::Light,
                 LightSamplingArg::Bsdf => LightSampling::Bsdf,
             };
+        }
+        if let Some(light_tracing) = self.light_tracing {
+            integrator.light_tracing = light_tracing.into();
         }
         if let Some(path_reuse) = self.path_reuse {
             integrator.path_reuse = path_reuse.into();

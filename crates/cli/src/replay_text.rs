@@ -25,6 +25,9 @@ pub(crate) fn describe(path: &Replay) -> String {
             Event::End { because } => writeln!(text, "end: {because}"),
         };
     }
+    if let Some(xyz) = &path.light_paths_xyz {
+        let _ = writeln!(text, "light paths of this sample bring XYZ {}", list(xyz));
+    }
     let _ = write!(text, "radiance {} W·m⁻²·sr⁻¹·nm⁻¹, XYZ {}", list(&path.radiance), list(&path.xyz));
     text
 }

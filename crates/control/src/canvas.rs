@@ -6,7 +6,7 @@
 use crate::sample_allocation::SampleAllocation;
 use etalon_transport::render::TILE;
 use etalon_transport::sampler::mix;
-use etalon_transport::{Control, Counters, Film, PixelRect, Prepared, ThreadError, TileSums};
+use etalon_transport::{Control, Counters, Film, PixelRect, Prepared, Splats, ThreadError, TileSums};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -39,6 +39,9 @@ pub struct Tile {
     /// What was counted on the way.
     pub counters: Counters,
 }
+
+/// Hears what a piece of a tile took and what the tile holds now, and says whether to go on.
+type OnPiece<'a> = dyn Fn(&Counters, PixelRect, &TileSums) -> Control + Sync + 'a;
 
 /// A picture under way. It may be read while others work on it.
 #[derive(Debug)]
@@ -152,10 +155,36 @@ impl Canvas {
         prepared: &Prepared,
         samples: &(dyn Fn(PixelRect) -> u32 + Sync),
         threads: Option<usize>,
-        on_piece: &(dyn Fn(&Counters, PixelRect, &TileSums) -> Control + Sync),
+        on_piece: &OnPiece<'_>,
     ) -> Result<(), ThreadError> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build()?;
         let stopped = AtomicBool::new(false);
+        let (from, until) = (self.samples()[0], self.most(samples));
+        for round in prepared.light_rounds(from..until) {
+            if stopped.load(Ordering::Relaxed) {
+                break;
+            }
+            let splats = pool.install(|| prepared.splats(std::slice::from_ref(&round), self.rect));
+            let target = |rect: PixelRect| samples(rect).min(round.end);
+            self.advance_by(prepared, &target, &splats, &pool, (&stopped, on_piece));
+        }
+        Ok(())
+    }
+
+    /// The most samples that `samples` says for a tile.
+    fn most(&self, samples: &(dyn Fn(PixelRect) -> u32 + Sync)) -> u32 {
+        self.state().tiles.iter().map(|tile| samples(tile.rect)).max().unwrap_or(0)
+    }
+
+    /// [`Canvas::advance`] by samples whose light paths are traced.
+    fn advance_by(
+        &self,
+        prepared: &Prepared,
+        samples: &(dyn Fn(PixelRect) -> u32 + Sync),
+        splats: &Splats,
+        pool: &rayon::ThreadPool,
+        (stopped, on_piece): (&AtomicBool, &OnPiece<'_>),
+    ) {
         pool.install(|| {
             (0..self.tiles()).into_par_iter().for_each(|number| {
                 if stopped.load(Ordering::Relaxed) {
@@ -166,7 +195,7 @@ impl Canvas {
                 let piece = (PATHS_OF_PIECE / tile.rect.area()).max(1) as u32;
                 while tile.samples < samples && !stopped.load(Ordering::Relaxed) {
                     let until = tile.samples.saturating_add(piece).min(samples);
-                    let counters = prepared.render_tile(tile.rect, tile.samples..until, &mut sums);
+                    let counters = prepared.render_tile(tile.rect, tile.samples..until, splats, &mut sums);
                     tile.samples = until;
                     tile.counters.merge(&counters);
                     {
@@ -180,7 +209,6 @@ impl Canvas {
                 }
             });
         });
-        Ok(())
     }
 
     /// A thread that panicked has left whole tiles only.

@@ -10,7 +10,7 @@ use crate::probe::{Probe, Purpose};
 use crate::sample_allocation::SampleAllocation;
 use etalon_transport::accuracy::ErrorSum;
 use etalon_transport::sampler::mix;
-use etalon_transport::{Counters, PixelRect, Prepared, ThreadError};
+use etalon_transport::{Counters, LIGHT_RAY, LightPathsNoise, PixelRect, Prepared, ThreadError};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -36,6 +36,8 @@ pub struct Pilot<'a> {
     block: u32,
     layers: u32,
     probe: Probe<'a>,
+    /// What light paths add to what the probe sees.
+    light: Option<LightPathsNoise>,
     samples: u32,
     seconds: f64,
     points: Vec<PilotPoint>,
@@ -59,6 +61,7 @@ impl<'a> Pilot<'a> {
             layers: 0,
             probe: Probe::new(prepared, Purpose::Pilot, threads)?,
             samples: 0,
+            light: prepared.light_paths_noise(rect),
             seconds: 0.0,
             points: Vec::new(),
         };
@@ -126,6 +129,8 @@ impl<'a> Pilot<'a> {
         self.seconds += clock() - start;
         let copies = f64::from(self.probe.copies());
         let rate = self.seconds / self.probe.paths() as f64;
+        let ray = self.seconds / self.probe.rays() as f64;
+        let of_light = self.light.map_or(0.0, |light| ray * LIGHT_RAY * light.rays * f64::from(samples));
         let paths = match &self.allocation {
             None => u64::from(samples) * self.rect.area(),
             Some(allocation) => allocation.paths(samples, self.probe.replicates()),
@@ -134,7 +139,7 @@ impl<'a> Pilot<'a> {
             samples,
             relative_rmse: error.relative_rmse().unwrap_or(f64::INFINITY) * copies.sqrt(),
             uncertainty: self.uncertainty(&error),
-            seconds: rate * paths as f64,
+            seconds: rate * paths as f64 + of_light,
         });
     }
 
@@ -183,7 +188,10 @@ impl<'a> Pilot<'a> {
     fn error(&self) -> ErrorSum {
         let mut error = ErrorSum::default();
         self.probe.seen().for_each(|seen| error.push(seen.pixel));
-        error
+        match self.light {
+            None => error,
+            Some(light) => error.with(light.y, light.variance / f64::from(self.samples.max(1) * self.probe.copies())),
+        }
     }
 
     /// The price of a relative error, from what was seen so far.

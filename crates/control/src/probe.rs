@@ -1,9 +1,10 @@
-//! Pixels traced with random numbers that no picture uses: what explorations and pilots are made of.
+//! Pixels traced with random numbers that no picture uses: what explorations and pilots are made of. Camera paths alone: light paths would have
+//! to be traced for the whole picture.
 
 use etalon_scene::SamplerKind;
 use etalon_transport::film::XyzSum;
 use etalon_transport::sampler::SOBOL_POINTS;
-use etalon_transport::{Counters, Pixel, PixelSamples, Prepared, ThreadError};
+use etalon_transport::{Counters, Pixel, PixelSamples, Prepared, Splats, ThreadError};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -96,6 +97,11 @@ impl<'a> Probe<'a> {
         self.pixels.iter().zip(sums).zip(work).map(|((&at, pixel), (&paths, &rays))| Seen { at, pixel, paths, rays })
     }
 
+    /// Rays of all kinds.
+    pub(crate) fn rays(&self) -> u64 {
+        self.rays.iter().sum()
+    }
+
     /// Camera paths traced.
     pub(crate) fn paths(&self) -> u64 {
         self.paths.iter().sum()
@@ -135,7 +141,7 @@ impl<'a> Probe<'a> {
                         }
                     }
                     let mut rays_of_pixels = vec![0; all_samples.len()];
-                    on_work(&prepared.render_pixels(&all_samples, sums, &mut rays_of_pixels));
+                    on_work(&prepared.render_pixels(&all_samples, &Splats::NONE, sums, &mut rays_of_pixels));
                     for (rays, of_copies) in rays.iter_mut().zip(rays_of_pixels.chunks_exact(copies as usize)) {
                         *rays += of_copies.iter().sum::<u64>();
                     }

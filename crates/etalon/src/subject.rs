@@ -46,6 +46,12 @@ pub struct Subject {
     /// The shares of the vertices from which specular connections are made, if any are.
     #[serde(default)]
     pub connection_shares: Option<[f64; 2]>,
+    /// Light paths of each sample, for each pixel of the picture; 0 if none are traced.
+    #[serde(default)]
+    pub light_paths_per_pixel: f64,
+    /// Width and height of a block of pixels that one of them may reach, if it may reach several.
+    #[serde(default)]
+    pub pixels_of_light_path: Option<[u32; 2]>,
 }
 
 /// Bands of wavelengths, and how the film keeps them.
@@ -114,12 +120,14 @@ impl Subject {
             guided_targets: [prepared.guided_targets(), prepared.specular_light_images()],
             guided_wavelengths: prepared.guided_wavelengths(),
             connection_shares: prepared.connection_shares(),
+            light_paths_per_pixel: prepared.light_paths_per_pixel(),
+            pixels_of_light_path: prepared.pixels_of_light_path(),
         }
     }
 
     /// A black film of this picture.
     pub fn film(&self) -> Film {
-        let block = serde_json::from_value(self.plan["path_reuse"].clone()).ok();
+        let block = serde_json::from_value(self.plan["path_reuse"].clone()).ok().or(self.pixels_of_light_path);
         let film = Film::with_bands(self.size[0], self.size[1], self.replicates, self.band_sums()).sharing(block);
         if self.records_stokes() { film.recording_stokes() } else { film }
     }
@@ -164,6 +172,7 @@ impl Subject {
                 "guided_targets",
                 "guided_wavelengths",
                 "connection_shares",
+                "light_paths_per_pixel",
             ];
             let first: Vec<_> = first.iter().map(|&key| (key.to_owned(), value[key].take())).collect();
             first.into_iter().chain(plan.into_iter().map(|(key, value)| (format!("plan.{key}"), value))).collect()
@@ -192,6 +201,7 @@ impl Subject {
                 "connection_shares" => {
                     "it makes specular connections from other vertices (see `etalon explain`)".to_owned()
                 }
+                "light_paths_per_pixel" => "it follows other light from the lamps (see `etalon explain`)".to_owned(),
                 "plan.effects" => "it simulates other effects (see `etalon explain`)".to_owned(),
                 "frame" => format!("it is {}, not {}", frame_name(self.frame), frame_name(other_frame)),
                 _ => format!("{} is {own}, not {other}", name(key)),
@@ -229,6 +239,8 @@ mod tests {
             guided_targets: [(0.0, 0); 2],
             guided_wavelengths: (0, 0),
             connection_shares: None,
+            light_paths_per_pixel: 0.0,
+            pixels_of_light_path: None,
             plan: serde_json::json!({"sampler": "sobol", "approximations": ["lens: everything is in focus"]}),
         };
         assert_eq!(subject.difference(&subject.clone()), None);
@@ -251,6 +263,10 @@ mod tests {
         assert_eq!(
             with(&|s| s.connection_shares = Some([1.0, 0.25])),
             "it makes specular connections from other vertices (see `etalon explain`)"
+        );
+        assert_eq!(
+            with(&|s| s.light_paths_per_pixel = 2.0),
+            "it follows other light from the lamps (see `etalon explain`)"
         );
         assert_eq!(with(&|s| s.scene_sha256 = "cd".to_owned()), "the SHA-256 of its scene is \"ab\", not \"cd\"");
         assert_eq!(

@@ -74,6 +74,7 @@ pub mod wavelength;
 pub use etalon_geometry::warp;
 pub use film::accuracy::{self, ImageError};
 pub use film::{Band, Counters, Film, NonFinite, Pixel, PixelRect, TileSums};
+pub use integrator::light_tracing::{LIGHT_RAY, LightPathsNoise, Splats};
 pub use integrator::tracer::PixelSamples;
 pub use integrator::{observer, replay};
 pub use media::DEPTH as MOST_SOLIDS_AT_ONCE;

@@ -49,6 +49,8 @@ struct ExplainJson<'a> {
     /// Shares of the vertices from which specular connections are made: of those behind the camera, a mirror or glass, and of others.
     #[serde(skip_serializing_if = "Option::is_none")]
     connection_shares: Option<[f64; 2]>,
+    /// Light paths for each pixel and sample; 0 where that does not pay.
+    light_paths_per_pixel: f64,
     /// How many regions of the picture draw some wavelengths more often, and how many there are. Both are 0 where that does not pay.
     guided_wavelengths: (usize, usize),
     /// What effects that are off would have cost, if it was measured.
@@ -91,6 +93,7 @@ pub(crate) fn run(args: ExplainArgs) -> Outcome {
             specular_image_share,
             specular_light_images,
             connection_shares: prepared.connection_shares(),
+            light_paths_per_pixel: prepared.light_paths_per_pixel(),
             guided_wavelengths: prepared.guided_wavelengths(),
             costs,
         });
@@ -121,6 +124,13 @@ fn describe(prepared: &Prepared, costs: &[Cost]) -> String {
         let share = format!("{:.0} % of the directions at diffuse surfaces aim at", 100.0 * share);
         let objects = if bodies == 1 { "object that mirrors or refracts" } else { "objects that mirror or refract" };
         lines.push(format!("{:<20} {share} {bodies} {objects}: a trial found less noise", "caustics"));
+    }
+    let per_pixel = prepared.light_paths_per_pixel();
+    if per_pixel > 0.0 {
+        let what = format!(
+            "{per_pixel} a pixel and sample bring what mirrors and glass throw on the scene: a trial found less noise"
+        );
+        lines.push(format!("{:<20} {what}", "light paths"));
     }
     if let (share, images @ 1..) = prepared.specular_light_images() {
         let share = format!("up to {:.0} % of the directions at diffuse surfaces aim at", 100.0 * share);

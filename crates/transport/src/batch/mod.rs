@@ -23,6 +23,7 @@ mod tests;
 
 use crate::film::{Counters, Sums};
 use crate::integrator::film_entry::{FilmEntry, Received};
+use crate::integrator::light_tracing::Splats;
 use crate::integrator::reuse::Blocks;
 use crate::integrator::tracer::{PixelSamples, Tracer};
 use crate::integrator::wavelength_lanes::WavelengthModel;
@@ -65,7 +66,7 @@ fn render_on<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
         Some(blocks) => Cursor::new(&blocks.all_samples, &blocks.block_pixels),
     };
     // Where paths are shared, others than those that end there add to the sums.
-    let nothing = Sums { xyz: &mut [], stokes: &mut [], bands: &mut [] };
+    let nothing = Sums { xyz: &mut [], stokes: &mut [], bands: &mut [], splats: &Splats::NONE };
     let (redistribution, finished) = match &blocks {
         None => (None, Finished::new::<P>(cursor.clone(), prepared, sums, rays)),
         Some(blocks) => (

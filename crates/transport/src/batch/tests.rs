@@ -68,7 +68,8 @@ fn batch<M: WavelengthModel<N>, const N: usize>(level: Level, prepared: &Prepare
     let counters = {
         let all_samples = PixelSamples::of_tile(tile, &(0..prepared.scene.integrator.spp));
         let mut rays = vec![0; all_samples.len()];
-        let counters = render_on::<M, Averaged, N>(level, prepared, &all_samples, sums.borrow(), &mut rays);
+        let counters =
+            render_on::<M, Averaged, N>(level, prepared, &all_samples, sums.borrow(&crate::Splats::NONE), &mut rays);
         assert_eq!(rays.iter().sum::<u64>(), counters.rays + counters.shadow_rays);
         counters
     };

@@ -152,6 +152,20 @@ impl ErrorSum {
         }
     }
 
+    /// The same of a picture to which light is added: `y` in the mean over pixels, which has a variance that is known.
+    #[must_use]
+    pub fn with(&self, y: f64, variance: f64) -> Self {
+        let pixels = self.pixels as f64;
+        Self {
+            y: self.y + pixels * y,
+            y_y: self.y_y + 2.0 * y * self.y + pixels * y * y,
+            variance: self.variance + pixels * variance,
+            variance_variance: self.variance_variance + 2.0 * variance * self.variance + pixels * variance * variance,
+            y_variance: self.y_variance + y * self.variance + variance * self.y + pixels * y * variance,
+            ..*self
+        }
+    }
+
     /// E; `None` if nothing is known of it.
     pub fn relative_rmse(&self) -> Option<f64> {
         // A sum of squares that is 0 has no pixel, or no light; one that is subnormal or infinite says nothing of variances.

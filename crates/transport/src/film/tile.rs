@@ -1,5 +1,7 @@
 //! All that a film keeps of a rectangle of pixels: to be added to, put down in bytes and taken up.
 
+use crate::integrator::light_tracing::Splats;
+
 use super::{BandSum, Film, Pixel, PixelRect, StokesSum, XyzSum};
 
 /// All that a film keeps of a rectangle of pixels, row by row: exactly, so that a picture can be put down and taken up.
@@ -21,6 +23,8 @@ pub(crate) struct Sums<'a> {
     pub stokes: &'a mut [StokesSum],
     /// Bands.
     pub bands: &'a mut [BandSum],
+    /// What light paths add to the samples.
+    pub splats: &'a Splats,
 }
 
 /// Bytes of one sum in a file: three numbers and a count.
@@ -34,8 +38,8 @@ const BAND_SUM_BYTES: usize = 12;
 
 impl TileSums {
     /// To be added to.
-    pub(crate) fn borrow(&mut self) -> Sums<'_> {
-        Sums { xyz: &mut self.xyz, stokes: &mut self.stokes, bands: &mut self.bands }
+    pub(crate) fn borrow<'a>(&'a mut self, splats: &'a Splats) -> Sums<'a> {
+        Sums { xyz: &mut self.xyz, stokes: &mut self.stokes, bands: &mut self.bands, splats }
     }
 
     /// The sums of the pixels with this many replicates each, row by row.

@@ -142,6 +142,15 @@ pub(crate) struct GuidedTargets {
     pub(crate) share: f64,
 }
 
+/// Nothing to aim at.
+pub(crate) static NO_TARGETS: GuidedTargets = GuidedTargets {
+    bodies: Vec::new(),
+    lenses: Vec::new(),
+    images: Vec::new(),
+    guided_by: GuidedBy::Nothing,
+    share: 0.0,
+};
+
 impl GuidedTargets {
     /// The scene's own mirrors and bodies of glass, where there are lamps that a walk may run into; none is aimed at yet.
     pub(crate) fn new(surfaces: &Surfaces, geometry: &Geometry, lights: &LightTable, range_nm: [f64; 2]) -> Self {

@@ -163,7 +163,7 @@ fn room(path_loop: PathLoop) -> Prepared {
 fn level(prepared: &Prepared) -> (f64, f64) {
     let tile = PixelRect { x0: 0, y0: 0, x1: 8, y1: 8 };
     let mut sums = prepared.film().tile(tile);
-    prepared.render_tile(tile, 0..prepared.scene.integrator.spp, &mut sums);
+    prepared.render_tile(tile, 0..prepared.scene.integrator.spp, &crate::Splats::NONE, &mut sums);
     let of_replicate =
         |r: usize| sums.xyz.iter().skip(r).step_by(16).map(|sum| sum.xyz[1] / f64::from(sum.count)).sum::<f64>() / 64.0;
     let (mean, error) = mean(16, {
@@ -219,7 +219,7 @@ fn noise(prepared: &Prepared) -> f64 {
     let film = &prepared.scene.film;
     let tile = PixelRect { x0: 0, y0: 0, x1: film.width, y1: film.height };
     let mut sums = prepared.film().tile(tile);
-    prepared.render_tile(tile, 0..prepared.scene.integrator.spp, &mut sums);
+    prepared.render_tile(tile, 0..prepared.scene.integrator.spp, &crate::Splats::NONE, &mut sums);
     let of_pixel = |replicates: &[XyzSum]| {
         let mut y = replicates.iter().map(|sum| sum.xyz[1] / f64::from(sum.count));
         let (mean, error) = mean(16, || y.next().unwrap());

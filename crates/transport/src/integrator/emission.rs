@@ -28,6 +28,9 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         observer: &mut impl Observer<N>,
     ) {
         for (environment, slot) in world.environments.iter().zip(&world.tables.environments) {
+            if environment.light.is_some() && self.is_light_traced(world) {
+                continue;
+            }
             counters.environment_lookups += 1;
             let (radiance, density) = self.radiance_from(world, environment, *slot, ray, &mut sky);
             let mis = match density {
@@ -92,8 +95,11 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         vertex: &SurfaceInteraction<'a>,
         observer: &mut impl Observer<N>,
     ) {
-        let Some(radiance) = self.radiance_of_surface(world, vertex) else { return };
         let SurfaceInteraction { point, surface, .. } = vertex;
+        if self.is_light_traced(world) && surface.light(point.surface).is_some() {
+            return;
+        }
+        let Some(radiance) = self.radiance_of_surface(world, vertex) else { return };
         let density = |light: &Light, from| light.density(from, ray.direction, ray.time);
         let mis = self.weight_of_hit(world, ray, Some(point.surface), || surface.light(point.surface), density);
         self.add(observer, Found::Emitter, radiance, mis);

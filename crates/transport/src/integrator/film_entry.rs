@@ -74,11 +74,14 @@ impl<'a> FilmEntry<'a> {
     pub(crate) fn add<M: WavelengthModel<N>, const N: usize>(
         &mut self,
         id: SampleId,
-        xyz: [f64; 3],
+        mut xyz: [f64; 3],
         received: &Received<N>,
         counters: &mut Counters,
     ) {
         counters.paths += 1;
+        if let Some(of_light_paths) = self.sums.splats.of(id.x, id.y, id.sample) {
+            (0..3).for_each(|c| xyz[c] += of_light_paths[c]);
+        }
         let stokes_xyz =
             received.stokes.map(|stokes| stokes.map(|s| M::to_xyz(self.prepared, &received.wavelengths, s)));
         let finite = |xyz: [f64; 3]| xyz.iter().all(|v| v.is_finite());

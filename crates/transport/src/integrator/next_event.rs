@@ -243,7 +243,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
 impl World<'_> {
     /// The colour that an image gives an emitting surface at the point that a shadow ray aims at.
     #[inline(always)]
-    fn colour_of_emitter(&self, light: u32, target: Target, time: f64) -> Option<Colour> {
+    pub(super) fn colour_of_emitter(&self, light: u32, target: Target, time: f64) -> Option<Colour> {
         let emitter = self.lights.lights()[light as usize].emitter()?;
         let (image, Target::Point(position)) = (emitter.image?, target) else { return None };
         self.surfaces.emitted(image.object, self.geometry, (emitter.surface, position), time)?.colour.map(Colour::Rgb)

@@ -36,6 +36,8 @@ pub(crate) struct Path<'a, M, P, const N: usize> {
     pub(super) guiding: f64,
     /// The last step of the walk, as far as MIS needs it.
     pub(super) step: Step,
+    /// Which of the light that it finds is left to light paths.
+    pub(super) light_traced: LightTraced,
     /// The media that it is in, where they are followed.
     pub stack: MediumStack<'a>,
     /// How far it has come along its ray.
@@ -85,6 +87,17 @@ pub(super) enum Step {
     /// Drawn with this density, the mean over the lanes, from this point of this primitive, where a shadow ray was sent too.
     /// If the path has gone through smooth interfaces since, the density is that of coming through.
     Shared { from: Vec3<f64>, leaves: SurfaceId, density: f64, since: Since },
+}
+
+/// Which of the light that a path finds is left to light paths: see [`light_tracing`](super::light_tracing).
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum LightTraced {
+    /// That which comes by way of casters to a vertex that scatters.
+    AfterCasters,
+    /// That which it meets next as well, since it came by way of casters from such a vertex.
+    Now,
+    /// None: the camera sees a mirror or glass first, or something was in the way that light paths do not go through.
+    Never,
 }
 
 /// What a path has met since its last vertex that scatters.
@@ -158,6 +171,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             eta_squared: 1.0,
             guiding: 1.0,
             step: Step::Unshared,
+            light_traced: LightTraced::AfterCasters,
             stack: MediumStack::NOTHING,
             walk: Walk::default(),
             passes: 0,
@@ -187,6 +201,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         self.eta_squared = 1.0;
         self.guiding = 1.0;
         self.step = Step::Unshared;
+        self.light_traced = LightTraced::AfterCasters;
         if let Some(stack) = start.stack {
             self.stack = stack;
         }
@@ -307,6 +322,18 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         if world.participating.is_some() {
             self.optical_depth = None;
         }
+    }
+
+    /// Whether light paths bring the light of a lamp, or of a sky that shadow rays aim at, which it has met.
+    #[inline(always)]
+    pub(super) fn is_light_traced(&self, world: &World<'a>) -> bool {
+        world.casters.is_some() && self.light_traced == LightTraced::Now
+    }
+
+    /// Whether light paths bring what comes by way of casters to the vertex at which it is, where that scatters.
+    #[inline(always)]
+    pub(super) fn is_light_traced_after_casters(&self, world: &World<'a>) -> bool {
+        world.casters.is_some() && self.light_traced != LightTraced::Never
     }
 
     /// Whether its last step was from a vertex that scatters into every direction.

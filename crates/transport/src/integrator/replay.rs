@@ -23,7 +23,10 @@ pub struct Replay {
     /// its up, S₂ along the diagonal that rises to the right less the other, seen from the eye, `radiance` is S₀.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stokes: Option<[Vec<f64>; 3]>,
-    /// What the sample adds to the pixel, CIE XYZ.
+    /// What the light paths of this sample add to the pixel, CIE XYZ, where such are traced.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub light_paths_xyz: Option<[f64; 3]>,
+    /// What the camera path adds to the pixel, CIE XYZ.
     pub xyz: [f64; 3],
 }
 
@@ -98,6 +101,7 @@ pub(crate) fn replay<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
         events: recorder.events,
         radiance: widen(radiance),
         stokes: stokes.map(|stokes| stokes.map(widen)),
+        light_paths_xyz: None,
         xyz: M::to_xyz(prepared, &wavelengths, radiance),
     }
 }

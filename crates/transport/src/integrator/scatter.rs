@@ -1,6 +1,6 @@
 //! The walk's next step: a direction from a surface, what it is worth, and whether the path goes on.
 
-use super::path::{Since, Step};
+use super::path::{LightTraced, Since, Step};
 use super::{Path, ROULETTE_FROM_VERTEX, ROULETTE_THROUGHPUT, THROUGHPUT_FLOOR};
 use crate::bsdf::dielectric::{Turn, turn};
 use crate::bsdf::{BsdfSample, Lobe, lambert};
@@ -171,6 +171,14 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         self.polarisation.follow(*wo, wi, || vertex.scattering().mueller(&self.wavelengths.lambda_nm, *wo, wi, lobe));
         let mean_of_hero = self.lanes.follow(sample.lane_density);
         self.eta_squared *= sample.eta * sample.eta;
+        if let Some(casters) = world.casters {
+            self.light_traced = match self.light_traced {
+                LightTraced::Never => LightTraced::Never,
+                _ if !delta => LightTraced::AfterCasters,
+                _ if self.vertex > 0 && casters.casts(vertex.surface.object) => LightTraced::Now,
+                _ => LightTraced::Never,
+            };
+        }
         self.step = if world.refracting_bodies.is_some() && delta {
             self.step_through(world, vertex, (wi, &sample.lane_density))
         } else {

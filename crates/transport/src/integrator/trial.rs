@@ -27,6 +27,8 @@ const NEAR: usize = 2;
 pub(crate) struct Tried {
     columns: Vec<u32>,
     rows: Vec<u32>,
+    /// Pixels between two of them.
+    step: u32,
 }
 
 impl Tried {
@@ -37,7 +39,13 @@ impl Tried {
         let tried = PIXELS.min(pixels.div_ceil(4));
         let step = (pixels as f64 / tried as f64).sqrt().ceil() as u32;
         let along = |end: u32| ((step / 2).min(end - 1)..end).step_by(step as usize).collect();
-        Self { columns: along(film.width), rows: along(film.height) }
+        Self { columns: along(film.width), rows: along(film.height), step }
+    }
+
+    /// The number of the tried pixel that stands for a pixel.
+    pub(crate) fn cell(&self, x: u32, y: u32) -> usize {
+        let along = |at: u32, tried: usize| ((at / self.step) as usize).min(tried - 1);
+        along(y, self.rows.len()) * self.columns.len() + along(x, self.columns.len())
     }
 
     /// What each pixel comes to: in the order of the pixels, whichever thread they are tried by.

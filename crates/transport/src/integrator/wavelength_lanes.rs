@@ -52,6 +52,9 @@ pub(crate) trait WavelengthModel<const N: usize>: Copy {
     /// The wavelengths of a path of a pixel; `u` gives the hero's number, if one is to be drawn.
     fn wavelengths(prepared: &Prepared, x: u32, y: u32, u: impl FnOnce() -> f64) -> Wavelengths<N>;
 
+    /// Those of a path that does not begin at a pixel.
+    fn wavelengths_of_light(prepared: &Prepared, u: f64) -> Wavelengths<N>;
+
     /// What each lane of the path's radiance adds to the film, in each of CIE XYZ.
     fn seen(prepared: &Prepared, wavelengths: &Wavelengths<N>, radiance: Lanes<f64, N>) -> [Lanes<f64, N>; 3];
 
@@ -121,6 +124,10 @@ impl WavelengthModel<1> for OneLane {
         Wavelengths::fixed([prepared.one_lane.wavelength_nm])
     }
 
+    fn wavelengths_of_light(prepared: &Prepared, _: f64) -> Wavelengths<1> {
+        Wavelengths::fixed([prepared.one_lane.wavelength_nm])
+    }
+
     #[inline(always)]
     fn seen(prepared: &Prepared, _: &Wavelengths<1>, radiance: Lanes<f64, 1>) -> [Lanes<f64, 1>; 3] {
         prepared.one_lane.xyz_of_unit.map(|v| Lanes([v * radiance[0]]))
@@ -158,6 +165,10 @@ impl<const N: usize> WavelengthModel<N> for Shared {
     #[inline(always)]
     fn wavelengths(prepared: &Prepared, _: u32, _: u32, u: impl FnOnce() -> f64) -> Wavelengths<N> {
         prepared.wavelengths.sample_lanes(u())
+    }
+
+    fn wavelengths_of_light(prepared: &Prepared, u: f64) -> Wavelengths<N> {
+        prepared.wavelengths.sample_lanes(u)
     }
 
     #[inline(always)]
@@ -220,6 +231,10 @@ impl<const N: usize> WavelengthModel<N> for Hero<N> {
         }
     }
 
+    fn wavelengths_of_light(prepared: &Prepared, u: f64) -> Wavelengths<N> {
+        prepared.wavelengths.sample_lanes(u)
+    }
+
     #[inline(always)]
     fn seen(prepared: &Prepared, wavelengths: &Wavelengths<N>, radiance: Lanes<f64, N>) -> [Lanes<f64, N>; 3] {
         prepared.wavelengths.seen(wavelengths, radiance)
@@ -250,6 +265,10 @@ impl WavelengthModel<3> for ThreeChannels {
     }
 
     fn wavelengths(_: &Prepared, _: u32, _: u32, _: impl FnOnce() -> f64) -> Wavelengths<3> {
+        Wavelengths::fixed(CHANNELS_NM)
+    }
+
+    fn wavelengths_of_light(_: &Prepared, _: f64) -> Wavelengths<3> {
         Wavelengths::fixed(CHANNELS_NM)
     }
 

@@ -2,8 +2,11 @@
 
 use crate::batch::render_batch;
 use crate::film::{Counters, Sums};
+use crate::guiding::NO_TARGETS;
 use crate::integrator::connection_trial::{ConnectionTrial, try_connections};
 use crate::integrator::film_entry::{FilmEntry, SampleId};
+use crate::integrator::light_tracing::trial::{CameraTrial, try_camera_paths};
+use crate::integrator::light_tracing::{Casters, Connection, trace_light_path};
 use crate::integrator::replay::{Replay, replay};
 use crate::integrator::reuse;
 use crate::integrator::tracer::{PixelSamples, Tracer};
@@ -14,10 +17,15 @@ use crate::plan::kernels::{self, KernelKind, LANES};
 use crate::polarisation::{Averaged, Followed, Polarisation};
 use crate::scene::prepare::Prepared;
 use crate::wavelength::guide::Regions;
+use std::ops::Range;
 
 /// Adds samples to the sums of pixels: pixel by pixel, and in each pixel replicate by replicate. Where the last slice is not empty, adds
 /// to it the rays that each pixel took.
 pub(crate) type RenderPixels = fn(&Prepared, &[PixelSamples], Sums<'_>, &mut [u64]) -> Counters;
+
+/// Follows the light paths of some numbers, of so many, of one sample, with random numbers of a seed. What each brings is given to the last.
+pub(crate) type TraceLightPaths =
+    fn(&Prepared, &Casters, u64, (Range<u64>, u64), u32, &mut Counters, &mut dyn FnMut(Connection));
 
 /// The path loop for one model of wavelengths.
 pub(crate) struct Kernel {
@@ -34,6 +42,10 @@ pub(crate) struct Kernel {
     pub try_guided_targets: fn(&Prepared, u64) -> Trial,
     /// Tells what specular connections bring and take, by a trial with random numbers of a seed.
     pub try_connections: fn(&Prepared, u64) -> ConnectionTrial,
+    /// Follows some light paths of a sample, with random numbers of a seed.
+    pub trace_light_paths: TraceLightPaths,
+    /// Tells what camera paths come to, by a trial with random numbers of a seed.
+    pub try_camera_paths: fn(&Prepared, u64) -> CameraTrial,
     /// Tells which wavelengths bring light in each region. Takes the seed of its random numbers, and the samples of each region.
     pub try_wavelengths: fn(&Prepared, u64, Regions, u32) -> WavelengthTrial,
 }
@@ -59,6 +71,8 @@ const fn entry<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(kind: 
         replay: replay::<M, P, N>,
         try_guided_targets: try_guided_targets::<M, P, N>,
         try_connections: try_connections::<M, P, N>,
+        trace_light_paths: trace_light_paths::<M, P, N>,
+        try_camera_paths: try_camera_paths::<M, P, N>,
         try_wavelengths: try_wavelengths::<M, P, N>,
     }
 }
@@ -72,6 +86,24 @@ impl Prepared {
     /// The kernel that the plan chose.
     pub(crate) fn kernel(&self) -> &'static Kernel {
         KERNELS.iter().find(|kernel| kernel.kind.name == self.plan().kernel).expect("each kind has a kernel")
+    }
+}
+
+fn trace_light_paths<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
+    prepared: &Prepared,
+    casters: &Casters,
+    seed: u64,
+    (numbers, of): (Range<u64>, u64),
+    sample: u32,
+    counters: &mut Counters,
+    put: &mut dyn FnMut(Connection),
+) {
+    let mut tracer = Tracer::new(prepared);
+    tracer.seed = seed;
+    // A direction toward what throws light is of no use to light itself.
+    tracer.world.guided_targets = &NO_TARGETS;
+    for number in numbers {
+        trace_light_path::<M, P, N>(&tracer, casters, (number, of), sample, counters, put);
     }
 }
 

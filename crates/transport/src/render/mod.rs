@@ -5,6 +5,7 @@ pub(crate) mod kernel;
 pub mod tune;
 
 use crate::film::{Counters, Film, PixelRect, Sums, TileSums, XyzSum};
+use crate::integrator::light_tracing::Splats;
 use crate::integrator::replay::Replay;
 use crate::integrator::tracer::PixelSamples;
 use crate::plan::{LaneModel, PathLoop};
@@ -45,19 +46,20 @@ pub struct ThreadError(#[from] rayon::ThreadPoolBuildError);
 impl Prepared {
     /// The whole film at the scene's own number of samples.
     pub fn whole(&self, threads: Option<usize>) -> Extent {
+        Extent { rect: self.whole_rect(), samples: 0..self.scene.integrator.spp, threads }
+    }
+
+    /// All pixels of the picture.
+    pub fn whole_rect(&self) -> PixelRect {
         let film = &self.scene.film;
-        Extent {
-            rect: PixelRect { x0: 0, y0: 0, x1: film.width, y1: film.height },
-            samples: 0..self.scene.integrator.spp,
-            threads,
-        }
+        PixelRect { x0: 0, y0: 0, x1: film.width, y1: film.height }
     }
 
     /// A black film for this scene.
     pub fn film(&self) -> Film {
         let film = &self.scene.film;
         let film = Film::with_bands(film.width, film.height, self.scene.integrator.replicates, self.band_sums())
-            .sharing(self.path_reuse());
+            .sharing(self.path_reuse().or(self.pixels_of_light_path()));
         if self.records_stokes() { film.recording_stokes() } else { film }
     }
 
@@ -87,20 +89,39 @@ impl Prepared {
         )
     }
 
-    /// Traces sample number `sample` of pixel (`x`, `y`) once more and says what happened.
+    /// Traces sample number `sample` of pixel (`x`, `y`) once more and says what happened; of its light paths, what they bring to the pixel.
     pub fn replay(&self, x: u32, y: u32, sample: u32) -> Replay {
+        Replay { light_paths_xyz: self.light_paths_xyz(x, y, sample), ..self.replay_camera_path(x, y, sample) }
+    }
+
+    /// The same of its camera path alone.
+    pub fn replay_camera_path(&self, x: u32, y: u32, sample: u32) -> Replay {
         (self.kernel().replay)(self, x, y, sample)
     }
 
-    /// Adds samples to the sums of a tile, by the loop that the plan chose.
-    pub fn render_tile(&self, tile: PixelRect, samples: Range<u32>, sums: &mut TileSums) -> Counters {
-        self.renderer()(self, &PixelSamples::of_tile(tile, &samples), sums.borrow(), &mut [])
+    fn light_paths_xyz(&self, x: u32, y: u32, sample: u32) -> Option<[f64; 3]> {
+        self.casters.as_ref()?;
+        let rect = PixelRect { x0: x, y0: y, x1: x + 1, y1: y + 1 };
+        let splats = self.splats(&[sample..sample.saturating_add(1)], rect);
+        Some(splats.of(x, y, sample).unwrap_or([0.0; 3]))
+    }
+
+    /// Adds samples to the sums of a tile, by the loop that the plan chose. `splats` holds what the light paths of these samples bring to it:
+    /// see [`Prepared::splats`].
+    pub fn render_tile(&self, tile: PixelRect, samples: Range<u32>, splats: &Splats, sums: &mut TileSums) -> Counters {
+        self.renderer()(self, &PixelSamples::of_tile(tile, &samples), sums.borrow(splats), &mut [])
     }
 
     /// Adds samples to the colours of pixels, pixel by pixel, in each replicate by replicate; and to `rays` the rays of all kinds that
-    /// each entry of `all_samples` took.
-    pub fn render_pixels(&self, all_samples: &[PixelSamples], xyz: &mut [XyzSum], rays: &mut [u64]) -> Counters {
-        self.renderer()(self, all_samples, Sums { xyz, stokes: &mut [], bands: &mut [] }, rays)
+    /// each entry of `all_samples` took. `splats` is as for [`Prepared::render_tile`].
+    pub fn render_pixels(
+        &self,
+        all_samples: &[PixelSamples],
+        splats: &Splats,
+        xyz: &mut [XyzSum],
+        rays: &mut [u64],
+    ) -> Counters {
+        self.renderer()(self, all_samples, Sums { xyz, stokes: &mut [], bands: &mut [], splats }, rays)
     }
 
     /// The loop that the plan chose.
@@ -146,24 +167,32 @@ impl Prepared {
     ) -> Result<(), ThreadError> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build()?;
         let stopped = AtomicBool::new(false);
-        let before: &Film = film;
-        let finished: Vec<_> = pool.install(|| {
-            tiles
-                .par_iter()
-                .map(|(tile, samples)| {
+        let mut under_way: Vec<_> =
+            tiles.iter().map(|(tile, _)| Some((film.tile(*tile), Counters::default()))).collect();
+        let samples =
+            tiles.iter().fold(u32::MAX..0, |all, (_, samples)| all.start.min(samples.start)..all.end.max(samples.end));
+        let whole = self.whole_rect();
+        for round in self.light_rounds(samples) {
+            let splats = pool.install(|| self.splats(std::slice::from_ref(&round), whole));
+            let advance =
+                |((tile, samples), under_way): (&(PixelRect, Range<u32>), &mut Option<(TileSums, Counters)>)| {
+                    let Some((sums, counters)) = under_way else { return };
                     if stopped.load(Ordering::Relaxed) {
-                        return None;
+                        *under_way = None;
+                        return;
                     }
-                    let mut sums = before.tile(*tile);
-                    let counters = self.render_tile(*tile, samples.clone(), &mut sums);
-                    if on_tile(&counters) == Control::Stop {
+                    let own = samples.start.max(round.start)..samples.end.min(round.end);
+                    if own.is_empty() && !samples.is_empty() {
+                        return;
+                    }
+                    counters.merge(&self.render_tile(*tile, own, &splats, sums));
+                    if samples.end <= round.end && on_tile(counters) == Control::Stop {
                         stopped.store(true, Ordering::Relaxed);
                     }
-                    Some((sums, counters))
-                })
-                .collect()
-        });
-        for ((tile, _), done) in tiles.iter().zip(finished) {
+                };
+            pool.install(|| tiles.par_iter().zip(&mut under_way).for_each(advance));
+        }
+        for ((tile, _), done) in tiles.iter().zip(under_way) {
             if let Some((sums, counters)) = done {
                 film.put(*tile, &sums);
                 film.counters.merge(&counters);

@@ -1,6 +1,8 @@
 //! From a scene to what is rendered: prepared, then tuned by trials before the picture.
 
 use crate::guiding::{GuidedBy, USUAL_SHARES};
+use crate::integrator::light_tracing::Casters;
+use crate::integrator::light_tracing::trial::light_paths_per_pixel;
 use crate::integrator::trial::{SHARES, TRIED};
 use crate::plan::{EffectName, LaneModel, Study};
 use crate::sampler::mix;
@@ -8,7 +10,7 @@ use crate::scene::coincidence;
 use crate::scene::prepare::{Prepared, build};
 use crate::scene::prepare_error::PrepareError;
 use crate::wavelength::guide::Regions;
-use etalon_scene::Scene;
+use etalon_scene::{LightTracing, Scene};
 
 /// What must be left of the variance. Much, since the trial knows of no strata: where the picture's samples would be spread evenly over
 /// directions, a share taken from them costs more than it foretells; and paths through guided targets are longer.
@@ -57,6 +59,8 @@ pub fn prepare_frame(scene: &Scene, study: &Study, earlier: Option<Prepared>) ->
     if !study.by_cosine_alone {
         // The same for each seed of a scene, so that pictures of different ones are drawn alike; and none that anyone would choose.
         prepared.tune(mix(0x6361_7573_7469_6373));
+    } else if prepared.scene.integrator.light_tracing == LightTracing::Always {
+        prepared.casters = prepared.wanted_casters();
     }
     let warnings = coincidence::warnings(&prepared);
     prepared.warnings.extend(warnings);
@@ -64,17 +68,56 @@ pub fn prepare_frame(scene: &Scene, study: &Study, earlier: Option<Prepared>) ->
 }
 
 impl Prepared {
-    /// Decides by trials, with random numbers of a seed: whether shadow rays go through glass, then what directions are guided by. Then from how
-    /// many vertices specular connections are made, and which wavelengths are drawn where.
+    /// Decides by trials, with random numbers of a seed: whether shadow rays go through glass, what directions are guided by, and from how many
+    /// vertices specular connections are made. Then whether light is followed from the lamps, and which wavelengths are drawn where.
     pub fn tune(&mut self, seed: u64) {
         // An earlier frame may have found otherwise, and each trial depends on what those before it have found.
+        self.wavelength_guide = None;
+        self.casters = None;
+        self.tune_camera_paths(seed);
+        self.tune_light_tracing(seed);
+        self.tune_wavelengths(seed);
+    }
+
+    fn tune_camera_paths(&mut self, seed: u64) {
         (self.guided_targets.guided_by, self.guided_targets.share) = (GuidedBy::Nothing, 0.0);
         self.set_connection_shares(USUAL_SHARES);
-        self.wavelength_guide = None;
         self.tune_refracted_shadows(seed);
         self.tune_guided_targets(seed);
         self.tune_connections(seed);
-        self.tune_wavelengths(seed);
+    }
+
+    /// Follows light from the lamps where that leaves less noise for the time than the best that camera paths do alone. What these are
+    /// guided by is then decided anew: it is no longer for them to find what light paths bring.
+    fn tune_light_tracing(&mut self, seed: u64) {
+        let Some(mut casters) = self.wanted_casters() else { return };
+        let try_camera_paths = |prepared: &Self| (prepared.kernel().try_camera_paths)(prepared, seed);
+        let whole = try_camera_paths(self);
+        self.casters = Some(casters.clone());
+        let rest = try_camera_paths(self);
+        let found = light_paths_per_pixel(self, &casters, seed, [&whole, &rest]);
+        let always = self.scene.integrator.light_tracing == LightTracing::Always;
+        casters.paths_per_pixel = found.map_or(1.0, |found| found.per_pixel);
+        self.casters = (always || found.is_some_and(|found| found.is_worth_it)).then_some(casters);
+        if self.casters.is_some() {
+            self.tune_camera_paths(seed);
+        }
+    }
+
+    /// The casters of a scene in which light paths are wanted and possible. Warns where they are asked for and not possible.
+    fn wanted_casters(&mut self) -> Option<Casters> {
+        let wanted = self.scene.integrator.light_tracing;
+        if wanted == LightTracing::Never {
+            return None;
+        }
+        match Casters::of(self) {
+            Ok(casters) => Some(casters),
+            Err(reason) if wanted == LightTracing::Always => {
+                self.warnings.push(format!("no light paths are traced, although the scene asks for them: {reason}"));
+                None
+            }
+            Err(_) => None,
+        }
     }
 
     /// Makes specular connections from the share of the vertices that leaves the least variance for the rays.

@@ -63,6 +63,12 @@ impl<'a> SurfaceInteraction<'a> {
         Self::new(-point.normal, hit, point, surface)
     }
 
+    /// The same surface, seen from another direction.
+    pub(crate) fn seen_from(&self, wo: Vec3<f64>) -> Self {
+        let Self { hit, point, surface, interface, crosses, is_open, kind, sees_lights, scattering, .. } = *self;
+        Self { hit, point, wo, surface, interface, crosses, is_open, kind, sees_lights, scattering }
+    }
+
     /// Becomes another one, as [`SurfaceInteraction::new`] has it.
     #[inline(always)]
     pub(crate) fn renew(

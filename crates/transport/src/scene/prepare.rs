@@ -6,6 +6,7 @@ use crate::camera::{Camera, Moving, PreparedLens};
 use crate::film::filter::FilterSampler;
 use crate::frame::{Affine, SceneFrame, mapped};
 use crate::guiding::{GuidedTargets, RefractingBodies, SpecularConnections};
+use crate::integrator::light_tracing::Casters;
 use crate::light::{Environment, Light, LightTable, weighted_sum};
 use crate::media::{Interior, Media, Medium, Participating, Solid};
 use crate::plan::{EffectName, LaneModel, OneLaneFilm, Plan, Study, simulated};
@@ -56,6 +57,8 @@ pub struct Prepared {
     pub(crate) guided_targets: GuidedTargets,
     pub(crate) specular_connections: Option<SpecularConnections>,
     pub(crate) refracting_bodies: Option<RefractingBodies>,
+    /// Set by the trial before a picture.
+    pub(crate) casters: Option<Casters>,
     /// Whether a trial found no use in what goes through them.
     pub(crate) shadow_rays_stop_at_glass: bool,
     plan: Plan,
@@ -239,6 +242,7 @@ pub(crate) fn build(scene: &Scene, study: &Study, earlier: Option<Prepared>) -> 
         guided_targets,
         specular_connections: specular_connections.flatten(),
         refracting_bodies: refracting_bodies.flatten(),
+        casters: None,
         shadow_rays_stop_at_glass: false,
         plan,
         shape_warnings: warnings.len(),

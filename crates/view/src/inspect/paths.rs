@@ -65,7 +65,7 @@ pub(crate) fn of_pixel(
     if x >= size[0] || y >= size[1] {
         return Err("the pixel is not in the picture".to_owned());
     }
-    let drawn = |sample| draw(prepared, view, size, sample, &prepared.replay(x, y, sample));
+    let drawn = |sample| draw(prepared, view, size, sample, &prepared.replay_camera_path(x, y, sample));
     Ok((0..count.min(MOST)).map(drawn).collect())
 }
 

@@ -145,7 +145,9 @@ impl Kept {
         let start = Instant::now();
         while under_way.samples < goal && (under_way.samples == 0 || start.elapsed().as_secs_f64() < most_s) {
             let next = (2 * under_way.samples).max(64).next_multiple_of(replicates).min(goal);
-            prepared.render_tile(rect_of(at), under_way.samples..next, &mut under_way.sums);
+            let numbers = under_way.samples..next;
+            let splats = prepared.splats(std::slice::from_ref(&numbers), rect_of(at));
+            prepared.render_tile(rect_of(at), numbers, &splats, &mut under_way.sums);
             under_way.samples = next;
         }
         under_way.seconds += start.elapsed().as_secs_f64();

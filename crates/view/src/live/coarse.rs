@@ -60,6 +60,7 @@ pub(crate) fn trace(
     let mut sums = vec![XyzSum::default(); pixels.len() * replicates as usize];
     let stopped = AtomicBool::new(false);
     pool.install(|| {
+        let splats = prepared.splats(&[0..samples], prepared.whole_rect());
         pixels.par_chunks(BATCH).zip(sums.par_chunks_mut(BATCH * replicates as usize)).for_each(|(pixels, sums)| {
             if stopped.load(Ordering::Relaxed) || stop() {
                 stopped.store(true, Ordering::Relaxed);
@@ -67,7 +68,7 @@ pub(crate) fn trace(
             }
             let of_pixel = |&(x, y): &(u32, u32)| PixelSamples { x, y, samples: 0..samples };
             let all: Vec<PixelSamples> = pixels.iter().map(of_pixel).collect();
-            prepared.render_pixels(&all, sums, &mut vec![0; all.len()]);
+            prepared.render_pixels(&all, &splats, sums, &mut vec![0; all.len()]);
         });
     });
     (!stopped.into_inner()).then_some(CoarsePixels {

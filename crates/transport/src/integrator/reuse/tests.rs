@@ -24,7 +24,7 @@ fn rendered(prepared: &Prepared) -> Film {
     let extent = prepared.whole(None);
     let mut film = prepared.film();
     let mut sums = film.tile(extent.rect);
-    film.counters = prepared.render_tile(extent.rect, extent.samples, &mut sums);
+    film.counters = prepared.render_tile(extent.rect, extent.samples, &crate::Splats::NONE, &mut sums);
     film.put(extent.rect, &sums);
     film
 }

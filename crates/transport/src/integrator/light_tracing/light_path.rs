@@ -1,0 +1,188 @@
+//! One path from a lamp, by way of casters, to the surfaces that it lights; each of them is connected to the camera.
+
+use super::Casters;
+use crate::bsdf::lambert;
+use crate::film::Counters;
+use crate::integrator::tracer::Tracer;
+use crate::integrator::wavelength_lanes::WavelengthModel;
+use crate::integrator::{Direction, MOST_VERTICES, Path, Start};
+use crate::light::{LightSample, Target};
+use crate::mis::Density;
+use crate::polarisation::Polarisation;
+use crate::sampler::Sampler;
+use crate::scene::interaction::SurfaceInteraction;
+use etalon_geometry::{Hit, Ray, SurfaceId};
+use etalon_optics::{Lanes, Vec3};
+
+/// The pixels of the film end before this number: light paths have random numbers of their own.
+const LIGHT_PATHS: u64 = 1 << 63;
+
+/// What a light path brings to the picture at one of its vertices.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Connection {
+    /// The place on the film, in pixels from its upper left corner.
+    pub place_px: [f64; 2],
+    /// What a pixel receives there whose filter has a density of 1 at this place, CIE XYZ.
+    pub xyz: [f64; 3],
+}
+
+/// Where a light path begins: on a caster, lit by a lamp.
+struct Beginning<'a, const N: usize> {
+    vertex: SurfaceInteraction<'a>,
+    /// The power that it stands for at each wavelength, if it is the only one of its sample.
+    power: Lanes<f64, N>,
+}
+
+/// Follows light path number `number` of the `of` of a sample. What it brings is given to `put`.
+pub(crate) fn trace_light_path<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
+    tracer: &Tracer<'a>,
+    casters: &Casters,
+    (number, of): (u64, u64),
+    sample: u32,
+    counters: &mut Counters,
+    put: &mut dyn FnMut(Connection),
+) {
+    let (world, integrator) = (&tracer.world, &tracer.prepared.scene.integrator);
+    let sampler = Sampler::new(integrator.sampler, tracer.seed, LIGHT_PATHS | number, sample, integrator.replicates);
+    let [u_wavelength, ..] = sampler.set(1);
+    let mut path = Path::<M, P, N>::idle();
+    let wavelengths = M::wavelengths_of_light(tracer.prepared, u_wavelength);
+    let (ray, right) = (Ray::free(Vec3::ZERO, Vec3::new(0.0, 0.0, 1.0)), Vec3::new(1.0, 0.0, 0.0));
+    let polarisation = P::at_camera(ray.direction, right);
+    path.begin(world, &Start { ray, stack: None, wavelengths, polarisation, weight: 1.0, hero_only: false });
+    let Some(Beginning { mut vertex, power }) = begin(tracer, casters, &mut path, (number, of), &sampler, counters)
+    else {
+        return;
+    };
+    let mut lights = false;
+    loop {
+        let is_caster = casters.casts(vertex.surface.object);
+        // Straight from the lamp, shadow rays of camera paths find it.
+        lights |= !is_caster;
+        if lights && let Some(connection) = connect(tracer, &mut path, &vertex, power / of as f64, &sampler, counters) {
+            put(connection);
+        }
+        // Camera, next vertex, those before it, lamp.
+        if path.vertex + 2 >= world.max_depth.min(MOST_VERTICES) {
+            return;
+        }
+        let [u_lobe, u1, u2, u_roulette] = sampler.vertex_set(path.vertex, 0);
+        let Some(direction) = path.sample_direction(world, &vertex, [u_lobe, u1, u2], &mut ()) else { return };
+        let Some(wi) = step(tracer, &mut path, &vertex, direction, (is_caster, u_lobe)) else { return };
+        if !path.survives(world, 1.0, u_roulette, &mut ()) {
+            return;
+        }
+        counters.rays += 1;
+        let ray = vertex.point.spawn(wi);
+        let Some(met) = world.intersect(&ray, &mut path.walk, &mut path.stack, counters) else { return };
+        vertex = met;
+        vertex.prepare_scattering(world);
+    }
+}
+
+/// Draws a point of the casters, and a lamp that lights it.
+fn begin<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
+    tracer: &Tracer<'a>,
+    casters: &Casters,
+    path: &mut Path<'a, M, P, N>,
+    (number, of): (u64, u64),
+    sampler: &Sampler,
+    counters: &mut Counters,
+) -> Option<Beginning<'a, N>> {
+    let world = &tracer.world;
+    let [u1, u2, u_place, u_light] = sampler.set(0);
+    // The paths of a sample are spread evenly over the area.
+    let u_place = (number as f64 + u_place) / of as f64;
+    let (primitive, position) = casters.point(world.geometry, u_place, [u1, u2])?;
+    let surface = SurfaceId { instance: 0, primitive };
+    let hit = Hit { t: 0.0, surface, uv: world.geometry.parameters(surface, position, 0.0) };
+    let point = world.geometry.surface(&Ray::free(position, Vec3::new(0.0, 0.0, 1.0)), &hit);
+
+    // As a shadow ray finds it.
+    let [_, light_1, light_2, _] = sampler.vertex_set(0, 1);
+    let draw = world.sample_light(&point, u_light, [light_1, light_2])?;
+    let has_source = world.lights.lights()[draw.light as usize].source().is_some();
+    if has_source && !casters.finds_sources {
+        return None;
+    }
+    let LightSample { wi: toward_lamp, density, scale, target, colour, .. } = draw.sample;
+    let mut vertex = SurfaceInteraction::new(-toward_lamp, hit, point, world.surfaces.of(&point));
+    path.visibility(world, &vertex, &draw.sample, counters)?;
+    let density = match density {
+        Density::Delta => 1.0,
+        Density::SolidAngle(density) => density,
+    };
+    let cos = point.normal.dot(toward_lamp).abs();
+    let colour = colour.or_else(|| world.colour_of_emitter(draw.light, target, point.time));
+    let white = path.spectrum_of_light(world, draw.light);
+    let power = path.coloured(white, colour) * (scale * cos * casters.area() / (density * draw.probability));
+    vertex.prepare_scattering(world);
+    Some(Beginning { vertex, power })
+}
+
+/// Takes a step along the light: `None` where light paths do not go on.
+fn step<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
+    tracer: &Tracer<'a>,
+    path: &mut Path<'a, M, P, N>,
+    vertex: &SurfaceInteraction<'a>,
+    direction: Direction<N>,
+    (is_caster, u_lobe): (bool, f64),
+) -> Option<Vec3<f64>> {
+    let world = &tracer.world;
+    let density = match &direction {
+        Direction::Diffuse { cos, .. } => Density::SolidAngle(lambert::density(*cos)),
+        Direction::Mirrored(_) | Direction::Turned { .. } => Density::Delta,
+        Direction::General { sample, .. } => sample.density,
+    };
+    // Backward and forward, smooth surfaces do the same, but for η², which the path keeps apart.
+    let Density::SolidAngle(density) = density else {
+        return is_caster.then(|| path.scatter(world, vertex, direction, u_lobe).wi);
+    };
+    // What light from behind becomes toward the next vertex: the camera's own formula, of power instead of radiance.
+    let power = path.beta * path.eta_squared;
+    let toward_light = vertex.wo;
+    let wi = path.scatter(world, vertex, direction, u_lobe).wi;
+    let seen = vertex.seen_from(wi);
+    let (f_cos, _) = path.eval(world, &seen, toward_light);
+    let [arriving, leaving] = [toward_light, wi].map(|direction| vertex.point.normal.dot(direction).abs());
+    path.beta = power * f_cos * (leaving / (arriving * density));
+    path.eta_squared = 1.0;
+    Some(wi)
+}
+
+/// What the camera sees of the light that arrives at a vertex.
+fn connect<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
+    tracer: &Tracer<'a>,
+    path: &mut Path<'a, M, P, N>,
+    vertex: &SurfaceInteraction<'a>,
+    power: Lanes<f64, N>,
+    sampler: &Sampler,
+    counters: &mut Counters,
+) -> Option<Connection> {
+    let world = &tracer.world;
+    if !world.tables.has_solid_angle_part(vertex.surface.material) {
+        return None;
+    }
+    let [_, lens_1, lens_2, _] = sampler.vertex_set(path.vertex, 1);
+    let seen = tracer.camera.project(vertex.point.position, [lens_1, lens_2])?;
+    let film = &tracer.prepared.scene.film;
+    let (width, height) = (f64::from(film.width), f64::from(film.height));
+    let place_px = [0.5 * (seen.film[0] + 1.0) * width, 0.5 * (1.0 - seen.film[1]) * height];
+    let reach = tracer.filter_reach_px();
+    if !(-reach..width + reach).contains(&place_px[0]) || !(-reach..height + reach).contains(&place_px[1]) {
+        return None;
+    }
+    let (f_cos, _) = path.eval(world, &vertex.seen_from(seen.toward), vertex.wo);
+    if f_cos.is_zero() {
+        return None;
+    }
+    let (target, surface) = (Target::Point(seen.origin), SurfaceId::NONE);
+    let to_camera = LightSample { wi: seen.toward, density: Density::Delta, target, surface, scale: 1.0, colour: None };
+    path.visibility(world, vertex, &to_camera, counters)?;
+    // Power arrives on an area of the surface itself, and the film sees that area from its own side.
+    let [arriving, leaving] = [vertex.wo, seen.toward].map(|direction| vertex.point.normal.dot(direction).abs());
+    let pixels = 0.25 * width * height * seen.magnification;
+    let weight = path.lanes.weight() * path.eta_squared * leaving * pixels / arriving;
+    let xyz = M::to_xyz(tracer.prepared, &path.wavelengths, power * path.beta * f_cos * weight);
+    Some(Connection { place_px, xyz })
+}

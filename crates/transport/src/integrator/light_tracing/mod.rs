@@ -1,0 +1,240 @@
+//! Light tracing: light that mirrors and glass throw on what the camera sees, followed from the lamps.
+//!
+//! A camera path finds such light only where its own direction happens to lead to a lamp, by way of mirrors and glass. For a small lamp that is
+//! rare. A path that begins at the lamp finds the lit place at once, and a connection to the camera says which pixel shows it (Arvo 1986,
+//! *Backward Ray Tracing*; Dutré, Lafortune & Willems 1993).
+//!
+//! **Which light.** Exactly the paths of the form camera – scattering surface – … – casters – lamp. The casters are mirrors or smooth interfaces of
+//! certain objects, one or more next to the lamp. Between the first surface and those the path may scatter, and be reflected or refracted by casters.
+//! All else is left to camera paths, which drop what they find of this form ([`LightTraced`](super::path::LightTraced)). So the two need no weights
+//! against each other.
+//!
+//! **One light path** ([`trace_light_path`]). It begins at the caster that is next to the lamp. Its first point is uniform on the area of all
+//! casters, and a shadow ray looks for a lamp from there, as from any vertex. So every kind of lamp works. Then the path goes on, away from the
+//! lamp. From the first surface on that is no caster, each vertex is connected to a point on the lens.
+//!
+//! **The film.** A sample of the picture has as many light paths as it has pixels, or a fixed multiple of that. What they bring to a pixel is added
+//! to the camera path of the same number ([`Splats`]). So a sample stays a function of the scene, its seed and its number, and replicates stay
+//! independent. Each part of a picture traces the light paths of its samples anew, whatever its tiles.
+//!
+//! **Reciprocity.** Where a surface scatters, both directions are known, and the camera's own formula is used: shading normals need no correction.
+//! Smooth surfaces reflect and transmit forward with the same probabilities as backward. But transmission scales radiance by n², and a walk along the
+//! light carries power, which it does not scale (Veach 1997, §5.2): the factors η² of the walk are taken back. No mesh with normals is a caster, and
+//! light paths end where such a mesh mirrors or refracts.
+
+mod light_path;
+mod splats;
+#[cfg(test)]
+mod tests;
+pub(crate) mod trial;
+
+pub(crate) use light_path::{Connection, trace_light_path};
+pub use splats::Splats;
+
+use crate::bsdf::Bsdf;
+use crate::film::PixelRect;
+use crate::film::filter::FilterSampler;
+use crate::plan::EffectName;
+use crate::sampler::mix;
+use crate::scene::prepare::Prepared;
+use crate::surface::shading_geometry::Coordinates;
+use crate::surface::{ObjectSurface, Surfaces};
+use etalon_geometry::{Geometry, PrimitiveId};
+use etalon_optics::Vec3;
+use std::ops::Range;
+
+/// Light paths that are traced before any of them reaches the film, about: some seconds.
+const PATHS_OF_ROUND: u64 = 1 << 21;
+/// Samples of a round, of pictures that take few light paths.
+const MOST_SAMPLES_OF_ROUND: u64 = 1 << 12;
+
+/// Samples by which the noise of light paths is told.
+const SAMPLES_OF_NOISE: u32 = 4;
+
+/// What light paths bring to a sample, in the mean over pixels, with the variance that independent paths have.
+#[derive(Clone, Copy, Debug)]
+pub struct LightPathsNoise {
+    /// CIE Y.
+    pub y: f64,
+    /// The variance of Y.
+    pub variance: f64,
+    /// Rays of all kinds that the light paths of a sample take, for the whole picture.
+    pub rays: f64,
+}
+
+/// The time of a ray of a light path over that of others: these are cast many at once.
+pub const LIGHT_RAY: f64 = 2.0;
+
+/// The objects that throw light, and how it is followed.
+#[derive(Clone, Debug)]
+pub(crate) struct Casters {
+    /// Of each object.
+    casts: Vec<bool>,
+    /// Their shapes, and the area of each with all before it.
+    primitives: Vec<PrimitiveId>,
+    area_until: Vec<f64>,
+    /// Whether light of lamps without area is found too. Then specular connections do not look for it.
+    pub finds_sources: bool,
+    /// Light paths of a sample, for each pixel of the picture.
+    pub paths_per_pixel: f64,
+}
+
+impl Casters {
+    /// Those of a scene, or why light paths are not possible in it.
+    pub(crate) fn of(prepared: &Prepared) -> Result<Self, &'static str> {
+        let plan = prepared.plan();
+        // What is forced on a scene that does not need it must change no bit.
+        let needs = |effect: EffectName| plan.runs(effect) && !plan.forces(effect);
+        let reasons = [
+            (needs(EffectName::NestedDielectrics), "solids with priorities are nested"),
+            (needs(EffectName::Absorption) || needs(EffectName::Scattering), "a medium absorbs or scatters light"),
+            (prepared.has_boundaries, "a surface is the boundary of a medium"),
+            (needs(EffectName::Masks), "a surface lets a part of the light pass"),
+            (needs(EffectName::Motion), "something moves"),
+            (needs(EffectName::Fluorescence), "a surface fluoresces"),
+            (needs(EffectName::Polarisation), "polarisation is followed"),
+            (prepared.lights.is_empty(), "shadow rays aim at no light"),
+            (prepared.tracing_camera().is_compound(), "the camera has a compound lens"),
+            (prepared.path_reuse().is_some(), "pixels share paths"),
+            (!prepared.receivers.is_empty(), "meters have no picture"),
+            (prepared.scene.film.bands.is_some(), "the film keeps bands"),
+        ];
+        if let Some((_, reason)) = reasons.into_iter().find(|(is_so, _)| *is_so) {
+            return Err(reason);
+        }
+        let casters = Self::new(&prepared.surfaces, &prepared.geometry).ok_or(
+            "there is no smooth mirror, metal or glass without shading normals that stands where it is defined",
+        )?;
+        // What shadow rays through glass find from what the camera sees is found by light paths alone.
+        let all_glass = || prepared.surfaces.others(&casters.casts).all(|of| !of.delta_transmission);
+        match prepared.refracting_bodies.is_none() || all_glass() {
+            true => Ok(casters),
+            false => Err("shadow rays go through smooth glass that has shading normals or is an instance"),
+        }
+    }
+
+    fn new(surfaces: &Surfaces, geometry: &Geometry) -> Option<Self> {
+        let mut casts = vec![false; surfaces.objects.len()];
+        let (mut primitives, mut area_until, mut area) = (Vec::new(), Vec::new(), 0.0);
+        // The scene's own: where instances place others, their areas are not known.
+        for (number, &object) in surfaces.object_of.first().into_iter().flatten().enumerate() {
+            let Some(of_object) = surfaces.objects.get(object as usize) else { continue };
+            let primitive = PrimitiveId(number as u32);
+            if let (true, Some(shape)) = (may_cast(surfaces, of_object), geometry.primitive(primitive).sampler()) {
+                casts[object as usize] = true;
+                area += shape.area();
+                primitives.push(primitive);
+                area_until.push(area);
+            }
+        }
+        let finds_sources = surfaces.others(&casts).all(|of| !of.has_delta());
+        (area > 0.0).then(|| Self { casts, primitives, area_until, finds_sources, paths_per_pixel: 1.0 })
+    }
+
+    /// Whether an object throws light.
+    #[inline(always)]
+    pub(crate) fn casts(&self, object: u32) -> bool {
+        self.casts[object as usize]
+    }
+
+    /// The area of all casters.
+    fn area(&self) -> f64 {
+        self.area_until.last().copied().unwrap_or(0.0)
+    }
+
+    /// A point of the casters for numbers in [0, 1); all are equally likely.
+    fn point(&self, geometry: &Geometry, u: f64, on_shape: [f64; 2]) -> Option<(PrimitiveId, Vec3<f64>)> {
+        let at = u * self.area();
+        let index = self.area_until.partition_point(|&until| until <= at).min(self.primitives.len() - 1);
+        let primitive = self.primitives[index];
+        Some((primitive, geometry.primitive(primitive).sampler()?.point(on_shape)))
+    }
+
+    /// Light paths of each sample of a picture.
+    pub(crate) fn paths_of_sample(&self, prepared: &Prepared) -> u64 {
+        ((pixels(prepared) as f64 * self.paths_per_pixel).round() as u64).max(1)
+    }
+}
+
+fn pixels(prepared: &Prepared) -> u64 {
+    let film = &prepared.scene.film;
+    u64::from(film.width) * u64::from(film.height)
+}
+
+/// Whether a walk along the light may go through an object as a walk against it does.
+fn may_cast(surfaces: &Surfaces, object: &ObjectSurface) -> bool {
+    let smooth = matches!(
+        surfaces.bsdfs[object.material].untinted(),
+        Bsdf::Mirror(_) | Bsdf::Conductor(_) | Bsdf::Dielectric(_) | Bsdf::ThinDielectric(_)
+    );
+    let bent = matches!(&object.coordinates, Coordinates::Mesh(mesh) if !mesh.mesh.normals.is_empty());
+    smooth && !bent && object.relief.is_none() && object.emission.is_none()
+}
+
+impl Surfaces {
+    /// The properties of objects that are no casters.
+    fn others<'a>(&'a self, casts: &'a [bool]) -> impl Iterator<Item = &'a crate::bsdf::Properties> {
+        self.objects
+            .iter()
+            .zip(casts)
+            .filter(|(_, casts)| !**casts)
+            .map(|(object, _)| &self.properties[object.material])
+    }
+}
+
+impl Prepared {
+    /// What light paths bring to the pixels of a rectangle in samples of these numbers; nothing where none are traced.
+    pub fn splats(&self, samples: &[Range<u32>], rect: PixelRect) -> Splats {
+        match &self.casters {
+            None => Splats::NONE,
+            Some(casters) => Splats::new(self, casters, samples, rect),
+        }
+    }
+
+    /// Samples in parts whose light paths are best traced at once: few enough for memory, and for a render to be stopped soon. All samples where
+    /// no light paths are traced.
+    pub fn light_rounds(&self, samples: Range<u32>) -> Vec<Range<u32>> {
+        let Some(casters) = &self.casters else { return vec![samples] };
+        let most = (PATHS_OF_ROUND / casters.paths_of_sample(self)).clamp(1, MOST_SAMPLES_OF_ROUND);
+        samples
+            .clone()
+            .step_by(most as usize)
+            .map(|first| first..first.saturating_add(most as u32).min(samples.end))
+            .collect()
+    }
+
+    /// What light paths bring to a rectangle; `None` where none are traced.
+    pub fn light_paths_noise(&self, rect: PixelRect) -> Option<LightPathsNoise> {
+        let casters = self.casters.as_ref()?;
+        // No picture is of this seed.
+        let seed = mix(self.scene.integrator.seed ^ 0x6c69_6768_7473);
+        let of = casters.paths_of_sample(self);
+        let tried = of.min(PATHS_OF_ROUND / u64::from(SAMPLES_OF_NOISE));
+        let splats = Splats::tried(self, casters, seed, (tried, 0..SAMPLES_OF_NOISE), rect);
+        // What one path brings does not depend on how many there are, but for their number in its weight.
+        let of_all = tried as f64 / of as f64;
+        let (samples, pixels) = (f64::from(SAMPLES_OF_NOISE), rect.area() as f64);
+        let (mut y, mut variance) = (0.0, 0.0);
+        for of_pixel in splats.by_pixel() {
+            let sum: f64 = of_pixel.iter().map(|(_, xyz)| xyz[1]).sum();
+            let squares: f64 = of_pixel.iter().map(|(_, xyz)| xyz[1] * xyz[1]).sum();
+            y += sum / samples;
+            // Samples that bring nothing are among them.
+            variance += (squares - sum * sum / samples) / (samples - 1.0);
+        }
+        let rays = splats.rays as f64 / splats.paths as f64 * of as f64;
+        Some(LightPathsNoise { y: y / pixels, variance: variance * of_all / pixels, rays })
+    }
+
+    /// Width and height of a block of pixels that one connection to the camera may reach, if light paths are traced and it may reach several:
+    /// their errors have a part in common.
+    pub fn pixels_of_light_path(&self) -> Option<[u32; 2]> {
+        let side = (2.0 * FilterSampler::reach_px(&self.scene.film.filter)).ceil() as u32;
+        (self.casters.is_some() && side > 1).then_some([side; 2])
+    }
+
+    /// Light paths of each sample, for each pixel of the picture; 0 where none are traced.
+    pub fn light_paths_per_pixel(&self) -> f64 {
+        self.casters.as_ref().map_or(0.0, |casters| casters.paths_per_pixel)
+    }
+}

@@ -1,0 +1,170 @@
+//! What light paths bring to pixels, sorted by pixel and sample.
+
+use super::{Casters, Connection};
+use crate::film::{Counters, PixelRect};
+use crate::scene::prepare::Prepared;
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// Light paths that a thread follows at once.
+const CHUNK: u64 = 1 << 12;
+
+/// What one light path brings to one pixel.
+#[derive(Clone, Copy, Debug)]
+struct Splat {
+    /// Number of the pixel within the rectangle, row by row.
+    pub pixel: u32,
+    pub sample: u32,
+    pub xyz: [f64; 3],
+}
+
+/// What the light paths of some samples bring to the pixels of a rectangle.
+#[derive(Clone, Debug)]
+pub struct Splats {
+    rect: PixelRect,
+    /// Where the entries of each pixel begin, and the end of the last; empty where no light paths are traced.
+    starts: Vec<usize>,
+    /// By pixel, then by the place of the sample among those asked for: number of the sample, CIE XYZ.
+    entries: Vec<(u32, [f64; 3])>,
+    /// Rays of all kinds that the light paths took, and how many paths there were.
+    pub rays: u64,
+    /// See `rays`.
+    pub paths: u64,
+}
+
+impl Splats {
+    /// Where no light paths are traced.
+    pub const NONE: Self = Self {
+        rect: PixelRect { x0: 0, y0: 0, x1: 0, y1: 0 },
+        starts: Vec::new(),
+        entries: Vec::new(),
+        rays: 0,
+        paths: 0,
+    };
+
+    /// Follows all light paths of some samples. The sums are the same for every number of threads.
+    pub(super) fn new(prepared: &Prepared, casters: &Casters, samples: &[Range<u32>], rect: PixelRect) -> Self {
+        let of = casters.paths_of_sample(prepared);
+        Self::traced(prepared, casters, prepared.scene.integrator.seed, (of, samples), rect)
+    }
+
+    /// The same of as many light paths in each sample, with random numbers of a seed.
+    pub(super) fn tried(
+        prepared: &Prepared,
+        casters: &Casters,
+        seed: u64,
+        (of, samples): (u64, Range<u32>),
+        rect: PixelRect,
+    ) -> Self {
+        Self::traced(prepared, casters, seed, (of, &[samples]), rect)
+    }
+
+    fn traced(
+        prepared: &Prepared,
+        casters: &Casters,
+        seed: u64,
+        (of, samples): (u64, &[Range<u32>]),
+        rect: PixelRect,
+    ) -> Self {
+        let chunks_of_sample = of.div_ceil(CHUNK);
+        let trace = prepared.kernel().trace_light_paths;
+        let chunks: Vec<(u32, Range<u64>)> = samples
+            .iter()
+            .cloned()
+            .flatten()
+            .flat_map(|sample| {
+                (0..chunks_of_sample).map(move |chunk| (sample, chunk * CHUNK..((chunk + 1) * CHUNK).min(of)))
+            })
+            .collect();
+        let traced: Vec<(Vec<Splat>, u64)> = chunks
+            .into_par_iter()
+            .map(|(sample, numbers)| {
+                let (mut counters, mut splats) = (Counters::default(), Vec::new());
+                trace(prepared, casters, seed, (numbers, of), sample, &mut counters, &mut |connection| {
+                    prepared.spread(&connection, sample, rect, &mut splats);
+                });
+                (splats, counters.rays + counters.shadow_rays)
+            })
+            .collect();
+        let rays = traced.iter().map(|(_, rays)| rays).sum();
+        let paths = of * samples.iter().map(|samples| samples.len() as u64).sum::<u64>();
+        let (starts, entries) = sorted(rect.area() as usize, traced.iter().flat_map(|(splats, _)| splats));
+        Self { rect, starts, entries, rays, paths }
+    }
+
+    /// What a sample of a pixel receives, CIE XYZ.
+    #[inline]
+    pub(crate) fn of(&self, x: u32, y: u32, sample: u32) -> Option<[f64; 3]> {
+        let rect = &self.rect;
+        if self.entries.is_empty() || x < rect.x0 || x >= rect.x1 || y < rect.y0 || y >= rect.y1 {
+            return None;
+        }
+        let pixel = ((y - rect.y0) * (rect.x1 - rect.x0) + (x - rect.x0)) as usize;
+        let of_pixel = &self.entries[self.starts[pixel]..self.starts[pixel + 1]];
+        let place = of_pixel.binary_search_by_key(&sample, |(sample, _)| *sample).ok()?;
+        Some(of_pixel[place].1)
+    }
+
+    /// What each pixel receives, row by row: the samples in which it receives anything, and CIE XYZ.
+    pub(super) fn by_pixel(&self) -> impl Iterator<Item = &[(u32, [f64; 3])]> {
+        self.starts.windows(2).map(|bounds| &self.entries[bounds[0]..bounds[1]])
+    }
+
+    /// The same one by one: column, row, CIE XYZ.
+    pub(super) fn all(&self) -> impl Iterator<Item = (u32, u32, [f64; 3])> + '_ {
+        let pixels = self.rect.pixels().zip(self.by_pixel());
+        pixels.flat_map(|((x, y), of_pixel)| of_pixel.iter().map(move |&(_, xyz)| (x, y, xyz)))
+    }
+}
+
+/// Sorts by pixel, keeps the order otherwise, and adds up what a pixel receives in one sample.
+fn sorted<'s>(pixels: usize, splats: impl Iterator<Item = &'s Splat> + Clone) -> (Vec<usize>, Vec<(u32, [f64; 3])>) {
+    let mut starts = vec![0; pixels + 1];
+    splats.clone().for_each(|splat| starts[splat.pixel as usize + 1] += 1);
+    for pixel in 0..pixels {
+        starts[pixel + 1] += starts[pixel];
+    }
+    let mut next = starts.clone();
+    let mut all = vec![(0, [0.0; 3]); starts[pixels]];
+    for splat in splats {
+        let place = &mut next[splat.pixel as usize];
+        all[*place] = (splat.sample, splat.xyz);
+        *place += 1;
+    }
+    let (mut entries, mut merged): (Vec<(u32, [f64; 3])>, _) = (Vec::new(), vec![0]);
+    for bounds in starts.windows(2) {
+        let first = entries.len();
+        for &(sample, xyz) in &all[bounds[0]..bounds[1]] {
+            match entries[first..].last_mut() {
+                Some((last, sum)) if *last == sample => (0..3).for_each(|c| sum[c] += xyz[c]),
+                _ => entries.push((sample, xyz)),
+            }
+        }
+        merged.push(entries.len());
+    }
+    (merged, entries)
+}
+
+impl Prepared {
+    /// What each pixel of a rectangle receives of a light path: by the density of its filter.
+    fn spread(&self, connection: &Connection, sample: u32, rect: PixelRect, splats: &mut Vec<Splat>) {
+        let reach = crate::film::filter::FilterSampler::reach_px(&self.scene.film.filter);
+        // The centre of a pixel is half a pixel after its number.
+        let near = |place: f64, first: u32, end: u32| {
+            let from = (place - 0.5 - reach).ceil().max(f64::from(first));
+            let to = (place - 0.5 + reach).floor().min(f64::from(end) - 1.0);
+            from as i64..to as i64 + 1
+        };
+        let [column, row] = connection.place_px;
+        for y in near(row, rect.y0, rect.y1) {
+            let of_row = self.filter.density(row - 0.5 - y as f64);
+            for x in near(column, rect.x0, rect.x1) {
+                let share = of_row * self.filter.density(column - 0.5 - x as f64);
+                if share > 0.0 {
+                    let pixel = (y as u32 - rect.y0) * (rect.x1 - rect.x0) + (x as u32 - rect.x0);
+                    splats.push(Splat { pixel, sample, xyz: connection.xyz.map(|v| v * share) });
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,161 @@
+//! A trial before a picture: whether light paths leave less noise for the time than camera paths alone, and how many of them.
+//!
+//! Some pixels are traced twice, with all that camera paths find and without what light paths find. Some light paths are followed beside that.
+//! One trial tells the noise for every number of light paths: with n times as many, their variance is 1/n.
+
+use super::{Casters, LIGHT_RAY, Splats};
+use crate::film::Counters;
+use crate::integrator::tracer::Tracer;
+use crate::integrator::trial::{SAMPLES, Tried};
+use crate::integrator::wavelength_lanes::WavelengthModel;
+use crate::polarisation::Polarisation;
+use crate::scene::prepare::Prepared;
+
+/// Light paths of each sample that are tried, and samples.
+const PATHS: u64 = 1 << 14;
+const LIGHT_SAMPLES: u32 = 8;
+/// Light paths for each pixel that the trial decides between.
+const PER_PIXEL: [f64; 7] = [0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0];
+/// What light paths must leave of variance times time.
+const WORTH_IT: f64 = 0.8;
+/// Where camera paths find less of the light than this, their variance says nothing: what bears it was missed.
+const FOUND: f64 = 0.5;
+/// Connections of about equal weight from which something is known of the light that they bring.
+const FEWEST_CONNECTIONS: f64 = 64.0;
+/// The part of all light that must have been missed, for that to count.
+const OF_ALL: f64 = 0.02;
+
+/// What the camera paths of some pixels came to: the mean and the mean square of each pixel's samples, and the rays of all.
+pub(crate) struct CameraTrial {
+    moments: Vec<(f64, f64)>,
+    rays: u64,
+}
+
+/// A trial by one kernel, in some pixels of the picture, evenly spread, with random numbers of a seed.
+pub(crate) fn try_camera_paths<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
+    prepared: &Prepared,
+    seed: u64,
+) -> CameraTrial {
+    let mut tracer = Tracer::new(prepared);
+    tracer.seed = seed;
+    let of_pixels = Tried::of(prepared).map(|x, y| {
+        let (mut mean, mut square, mut counters) = (0.0, 0.0, Counters::default());
+        for sample in 0..SAMPLES {
+            let path = tracer.sample::<M, P, N>(x, y, sample, &mut counters, &mut ());
+            let received = path.received();
+            let level = level(M::to_xyz(prepared, &received.wavelengths, received.radiance));
+            // What is not finite the picture reports.
+            if level.is_finite() {
+                mean += level / f64::from(SAMPLES);
+                square += level * level / f64::from(SAMPLES);
+            }
+        }
+        ((mean, square), counters.rays + counters.shadow_rays)
+    });
+    let (moments, rays): (Vec<_>, Vec<u64>) = of_pixels.into_iter().unzip();
+    CameraTrial { moments, rays: rays.into_iter().sum() }
+}
+
+/// Of a colour in CIE XYZ: all of it, since spectra are seen in colours.
+fn level(xyz: [f64; 3]) -> f64 {
+    xyz.iter().sum::<f64>() / 3.0
+}
+
+/// What a sample of the picture comes to, for each pixel that was tried: mean, variance against the level of each place, and rays.
+#[derive(Clone, Copy, Debug, Default)]
+struct Cost {
+    light: f64,
+    variance: f64,
+    rays: f64,
+}
+
+/// What a trial found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Found {
+    /// The number of light paths for each pixel that leaves the least variance for the time.
+    pub per_pixel: f64,
+    /// Whether that is less than camera paths leave alone.
+    pub is_worth_it: bool,
+}
+
+/// What light paths would leave of the noise; `None` if too few of them reach the camera to say.
+pub(crate) fn light_paths_per_pixel(
+    prepared: &Prepared,
+    casters: &Casters,
+    seed: u64,
+    [whole, rest]: [&CameraTrial; 2],
+) -> Option<Found> {
+    let tried = Tried::of(prepared);
+    let rect = prepared.whole_rect();
+    let splats = Splats::tried(prepared, casters, seed, (PATHS.min(rect.area()), 0..LIGHT_SAMPLES), rect);
+    // With one path for each pixel, as on the picture.
+    let of_path = splats.paths as f64 / (f64::from(LIGHT_SAMPLES) * rect.area() as f64);
+    let cells = whole.moments.len();
+    let pixels_of_cell = rect.area() as f64 / cells as f64;
+    let (mut means, mut squares) = (vec![0.0; cells], vec![0.0; cells]);
+    let (mut sum, mut sum_of_squares) = (0.0, 0.0);
+    for (x, y, xyz) in splats.all() {
+        let (cell, level) = (tried.cell(x, y), level(xyz));
+        (sum, sum_of_squares) = (sum + level, sum_of_squares + level * level);
+        means[cell] += level / (f64::from(LIGHT_SAMPLES) * pixels_of_cell);
+        squares[cell] += level * level * of_path / (f64::from(LIGHT_SAMPLES) * pixels_of_cell);
+    }
+    // So many of equal weight would have the same scatter (Kish 1965).
+    if !(sum * sum >= FEWEST_CONNECTIONS * sum_of_squares && sum > 0.0) {
+        return None;
+    }
+    let all: Vec<f64> = means.iter().zip(&rest.moments).map(|(of_light, (of_rest, _))| of_light + of_rest).collect();
+    let scales: Vec<f64> = tried.levels(&all).into_iter().map(|(_, scale)| scale).collect();
+    let cost_of = |camera: &CameraTrial| {
+        let mut cost = Cost { rays: camera.rays as f64 / f64::from(SAMPLES), ..Cost::default() };
+        for ((mean, square), scale) in camera.moments.iter().zip(&scales) {
+            cost.light += mean;
+            if *scale > 0.0 {
+                cost.variance += (square - mean * mean).max(0.0) / scale;
+            }
+        }
+        cost
+    };
+    let mut of_light = Cost { light: means.iter().sum(), ..Cost::default() };
+    for (square, scale) in squares.iter().zip(&scales) {
+        if *scale > 0.0 {
+            of_light.variance += square / scale;
+        }
+    }
+    of_light.rays = LIGHT_RAY * cells as f64 * splats.rays as f64 / splats.paths as f64;
+    Some(best(cost_of(whole), cost_of(rest), of_light))
+}
+
+fn best(whole: Cost, rest: Cost, of_light: Cost) -> Found {
+    let product =
+        |per_pixel: f64| (rest.variance + of_light.variance / per_pixel) * (rest.rays + of_light.rays * per_pixel);
+    let per_pixel = PER_PIXEL.into_iter().min_by(|a, b| product(*a).total_cmp(&product(*b))).unwrap_or(1.0);
+    let all = rest.light + of_light.light;
+    let missed = whole.light - rest.light < FOUND * of_light.light && of_light.light > OF_ALL * all;
+    let is_worth_it = missed || product(per_pixel) < WORTH_IT * whole.variance * whole.rays;
+    Found { per_pixel, is_worth_it }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn light_is_followed_from_lamps_where_that_leaves_less_noise_for_the_time() {
+        let cost = |light, variance, rays| Cost { light, variance, rays };
+        let whole = cost(100.0, 50.0, 1000.0);
+        let rest = cost(90.0, 1.0, 1000.0);
+        let chosen = |whole, rest, of_light| {
+            let found = best(whole, rest, of_light);
+            found.is_worth_it.then_some(found.per_pixel)
+        };
+        // As many as balance the two kinds.
+        assert_eq!(chosen(whole, rest, cost(10.0, 1.0, 1000.0)), Some(1.0));
+        assert_eq!(chosen(whole, rest, cost(10.0, 4.0, 1000.0)), Some(2.0));
+        // More noise than it takes away.
+        assert_eq!(chosen(whole, cost(90.0, 45.0, 1000.0), cost(10.0, 30.0, 4000.0)), None);
+        // Camera paths have missed it, and so know nothing of its variance.
+        assert_eq!(chosen(cost(91.0, 1.0, 1000.0), rest, cost(10.0, 1.0, 1000.0)), Some(1.0));
+        assert_eq!(chosen(cost(100.0, 1.0, 1000.0), cost(99.99, 1.0, 1000.0), cost(0.5, 1.0, 1000.0)), None);
+    }
+}
