@@ -39,6 +39,7 @@ mod judge;
 mod lamps;
 mod lamps_behind_glass;
 mod lens_tracer;
+mod light_paths;
 mod lit_fog;
 mod luminous;
 mod masks;
@@ -356,7 +357,7 @@ pub fn truths() -> Vec<Truth> {
     LIST.clone()
 }
 
-const GROUPS: [fn() -> Vec<Truth>; 49] = [
+const GROUPS: [fn() -> Vec<Truth>; 50] = [
     lamps_behind_glass::truths,
     furnaces::truths,
     beckmann::truths,
@@ -402,6 +403,7 @@ const GROUPS: [fn() -> Vec<Truth>; 49] = [
     albedo_grids::truths,
     nested_media::truths,
     lit_fog::truths,
+    light_paths::truths,
     phase_matrices::truths,
     meters::truths,
     luminous::truths,

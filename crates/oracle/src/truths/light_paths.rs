@@ -1,0 +1,123 @@
+//! Floors lit by way of a mirror or a plate of glass, found by paths from the lamps and without them.
+
+use super::{
+    Truth,
+    scene::{Scene, black, block, glass, lambert, level_square, mirror, parallelogram, shown, sphere},
+};
+use crate::laws::fresnel_exact;
+use serde_json::json;
+use std::f64::consts::PI;
+
+/// The words that a scene may say of light paths.
+const WAYS: [&str; 3] = ["always", "never", "auto"];
+/// Half of the side of the square that the camera sees, m.
+fn half_view() -> f64 {
+    0.5 * 20.0_f64.to_radians().tan()
+}
+
+pub(super) fn truths() -> Vec<Truth> {
+    WAYS.into_iter()
+        .flat_map(|way| [by_a_mirror(way, false), by_a_mirror(way, true), through_a_plate(way), in_glass(way)])
+        .collect()
+}
+
+/// A camera that looks straight down at a square of a floor about x = 0.5.
+fn floor(way: &'static str) -> Scene {
+    Scene::pinhole([0.5, 0.0, 0.5], [0.5, 0.0, 0.0], 40.0)
+        .up([0.0, 1.0, 0.0])
+        .object(level_square([0.5, 0.0, 0.0], 2.0, true), lambert(0.5))
+        .set("integrator", "light_tracing", json!(way))
+        .film(24, 24)
+        .spp(1 << 8)
+}
+
+/// The lamp is shaded by a sheet, and lights the floor by way of an upright mirror.
+fn by_a_mirror(way: &'static str, has_area: bool) -> Truth {
+    const REFLECTANCE: f64 = 0.9;
+    const RADIUS_M: f64 = 0.1;
+    let (lamp, intensity) = ([0.2, 0.0, 0.8], 3.0);
+    // As far behind the mirror, which stands at x = −0.6.
+    let (near, far, height, half) = (1.9 - half_view(), 1.9 + half_view(), lamp[2], half_view());
+    let solid_angle = |x: f64| (x * half / (height * (x * x + half * half + height * height).sqrt())).atan();
+    let mean = intensity * 2.0 * (solid_angle(far) - solid_angle(near)) / (4.0 * half * half);
+    let scene = floor(way)
+        .object(parallelogram([-0.6, -0.4, 0.0], [0.0, 0.8, 0.0], [0.0, 0.0, 1.1]), mirror(REFLECTANCE))
+        .object(parallelogram([0.05, -0.2, 0.6], [0.45, 0.0, 0.0], [0.0, 0.4, 0.0]), black());
+    let (name, scene) = match has_area {
+        false => ("lamp-at-a-point", scene.point_light(lamp, intensity)),
+        true => {
+            ("ball-lamp", scene.lamp(sphere(lamp, RADIUS_M), black(), intensity / (PI * RADIUS_M * RADIUS_M), "front"))
+        }
+    };
+    Truth::new(
+        format!("{name}-by-a-mirror-with-light-paths-{way}"),
+        &scene,
+        shown(REFLECTANCE * mean),
+        "(ρ/π) R I Ω/A of the lamp's image above the square",
+    )
+    .because(
+        "The mirror shows the lamp as far behind itself. A lamp of intensity I sends the flux I Ω to a square of the solid angle Ω, and a ball sends as \
+         much as a point in its middle. The floor sends nothing to itself by way of the mirror.",
+    )
+    .confirmed("irradiance I h/r³ over a grid of points", 1e-4, move || {
+        let at = |step: u32| half * ((f64::from(step) + 0.5) / 100.0 - 1.0);
+        let irradiance = |x: f64, y: f64| intensity * height / ((x + 1.9).powi(2) + y * y + height * height).powf(1.5);
+        let sum: f64 = (0..200).flat_map(|i| (0..200).map(move |j| irradiance(at(i), at(j)))).sum();
+        shown(REFLECTANCE * sum / 40_000.0)
+    })
+    .or_else("the mirror shows nothing", 0.0)
+    .or_else("the mirror loses nothing", shown(mean))
+    .or_else("light counted twice", shown(2.0 * REFLECTANCE * mean))
+    .sees(0.01)
+}
+
+/// The sun high above a plate of glass, and paths of four edges: camera, floor, two faces, sun.
+fn through_a_plate(way: &'static str) -> Truth {
+    const INDEX: f64 = 1.5;
+    let kept = 1.0 - fresnel_exact(1.0, INDEX).reflectance();
+    let irradiance = 2.0;
+    let scene = floor(way)
+        .object(block([-1.5, -2.0, 0.7], [2.5, 2.0, 1.0]), glass(INDEX))
+        .directional_light([0.0, 0.0, -1.0], irradiance)
+        .depth(4);
+    Truth::new(
+        format!("sun-through-a-plate-with-light-paths-{way}"),
+        &scene,
+        shown(kept * kept * irradiance),
+        "(ρ/π) (1 − R)² E, R = ((n − 1)/(n + 1))²",
+    )
+    .because("Each face passes 1 − R; what goes to and fro inside takes more edges than paths may have.")
+    .confirmed("4n/(n + 1)² of each face", 1e-12, move || {
+        shown((4.0 * INDEX / ((INDEX + 1.0) * (INDEX + 1.0))).powi(2) * irradiance)
+    })
+    .or_else("no light through glass", 0.0)
+    .or_else("power scaled by n² at one face", shown(kept * kept * irradiance * INDEX * INDEX))
+    .or_else("what goes to and fro, too", shown(kept / (2.0 - kept) * irradiance))
+    .sees(0.01)
+}
+
+/// The sun high above a block of glass that holds floor and camera, and paths of three edges: camera, floor, upper face, sun.
+fn in_glass(way: &'static str) -> Truth {
+    const INDEX: f64 = 1.5;
+    let kept = 1.0 - fresnel_exact(1.0, INDEX).reflectance();
+    let irradiance = 2.0;
+    let scene = floor(way)
+        .object(block([-3.0, -3.0, -0.5], [4.0, 3.0, 1.0]), glass(INDEX))
+        .directional_light([0.0, 0.0, -1.0], irradiance)
+        .depth(3);
+    Truth::new(
+        format!("sun-on-a-floor-in-glass-with-light-paths-{way}"),
+        &scene,
+        shown(kept * irradiance),
+        "(ρ/π) (1 − R) E",
+    )
+    .because(
+        "The upper face passes 1 − R of the power, whatever the index. The radiance of the sun is n² times as high within, and fills 1/n² of the \
+         solid angle. What the floor sends back is seen within the glass.",
+    )
+    .confirmed("4n/(n + 1)²", 1e-12, move || shown(4.0 * INDEX / ((INDEX + 1.0) * (INDEX + 1.0)) * irradiance))
+    .or_else("no light through glass", 0.0)
+    .or_else("power scaled by n²", shown(kept * irradiance * INDEX * INDEX))
+    .or_else("power scaled by 1/n²", shown(kept * irradiance / (INDEX * INDEX)))
+    .sees(0.01)
+}
