@@ -164,7 +164,7 @@ impl Canvas {
             if stopped.load(Ordering::Relaxed) {
                 break;
             }
-            let splats = pool.install(|| prepared.splats(std::slice::from_ref(&round), self.rect));
+            let splats = pool.install(|| prepared.splats(round.clone(), self.rect));
             let target = |rect: PixelRect| samples(rect).min(round.end);
             self.advance_by(prepared, &target, &splats, &pool, (&stopped, on_piece));
         }

@@ -102,7 +102,7 @@ impl Prepared {
     fn light_paths_xyz(&self, x: u32, y: u32, sample: u32) -> Option<[f64; 3]> {
         self.casters.as_ref()?;
         let rect = PixelRect { x0: x, y0: y, x1: x + 1, y1: y + 1 };
-        let splats = self.splats(&[sample..sample.saturating_add(1)], rect);
+        let splats = self.splats(sample..sample.saturating_add(1), rect);
         Some(splats.of(x, y, sample).unwrap_or([0.0; 3]))
     }
 
@@ -173,7 +173,7 @@ impl Prepared {
             tiles.iter().fold(u32::MAX..0, |all, (_, samples)| all.start.min(samples.start)..all.end.max(samples.end));
         let whole = self.whole_rect();
         for round in self.light_rounds(samples) {
-            let splats = pool.install(|| self.splats(std::slice::from_ref(&round), whole));
+            let splats = pool.install(|| self.splats(round.clone(), whole));
             let advance =
                 |((tile, samples), under_way): (&(PixelRect, Range<u32>), &mut Option<(TileSums, Counters)>)| {
                     let Some((sums, counters)) = under_way else { return };

@@ -146,7 +146,7 @@ impl Kept {
         while under_way.samples < goal && (under_way.samples == 0 || start.elapsed().as_secs_f64() < most_s) {
             let next = (2 * under_way.samples).max(64).next_multiple_of(replicates).min(goal);
             let numbers = under_way.samples..next;
-            let splats = prepared.splats(std::slice::from_ref(&numbers), rect_of(at));
+            let splats = prepared.splats(numbers.clone(), rect_of(at));
             prepared.render_tile(rect_of(at), numbers, &splats, &mut under_way.sums);
             under_way.samples = next;
         }

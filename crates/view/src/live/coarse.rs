@@ -60,7 +60,7 @@ pub(crate) fn trace(
     let mut sums = vec![XyzSum::default(); pixels.len() * replicates as usize];
     let stopped = AtomicBool::new(false);
     pool.install(|| {
-        let splats = prepared.splats(&[0..samples], prepared.whole_rect());
+        let splats = prepared.splats(0..samples, prepared.whole_rect());
         pixels.par_chunks(BATCH).zip(sums.par_chunks_mut(BATCH * replicates as usize)).for_each(|(pixels, sums)| {
             if stopped.load(Ordering::Relaxed) || stop() {
                 stopped.store(true, Ordering::Relaxed);

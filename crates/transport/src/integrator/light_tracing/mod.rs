@@ -43,8 +43,8 @@ use etalon_geometry::{Geometry, PrimitiveId};
 use etalon_optics::Vec3;
 use std::ops::Range;
 
-/// Light paths that are traced before any of them reaches the film, about: some seconds.
-const PATHS_OF_ROUND: u64 = 1 << 21;
+/// Light paths that are traced before any of them reaches the film, about: a second, and some hundred megabytes.
+const PATHS_OF_ROUND: u64 = 1 << 20;
 /// Samples of a round, of pictures that take few light paths.
 const MOST_SAMPLES_OF_ROUND: u64 = 1 << 12;
 
@@ -184,7 +184,7 @@ impl Surfaces {
 
 impl Prepared {
     /// What light paths bring to the pixels of a rectangle in samples of these numbers; nothing where none are traced.
-    pub fn splats(&self, samples: &[Range<u32>], rect: PixelRect) -> Splats {
+    pub fn splats(&self, samples: Range<u32>, rect: PixelRect) -> Splats {
         match &self.casters {
             None => Splats::NONE,
             Some(casters) => Splats::new(self, casters, samples, rect),
@@ -195,7 +195,8 @@ impl Prepared {
     /// no light paths are traced.
     pub fn light_rounds(&self, samples: Range<u32>) -> Vec<Range<u32>> {
         let Some(casters) = &self.casters else { return vec![samples] };
-        let most = (PATHS_OF_ROUND / casters.paths_of_sample(self)).clamp(1, MOST_SAMPLES_OF_ROUND);
+        let reached = self.pixels_of_light_path().map_or(1, |[width, height]| u64::from(width * height));
+        let most = (PATHS_OF_ROUND / (reached * casters.paths_of_sample(self))).clamp(1, MOST_SAMPLES_OF_ROUND);
         samples
             .clone()
             .step_by(most as usize)
@@ -210,7 +211,7 @@ impl Prepared {
         let seed = mix(self.scene.integrator.seed ^ 0x6c69_6768_7473);
         let of = casters.paths_of_sample(self);
         let tried = of.min(PATHS_OF_ROUND / u64::from(SAMPLES_OF_NOISE));
-        let splats = Splats::tried(self, casters, seed, (tried, 0..SAMPLES_OF_NOISE), rect);
+        let splats = Splats::of_paths(self, casters, seed, (tried, 0..SAMPLES_OF_NOISE), rect);
         // What one path brings does not depend on how many there are, but for their number in its weight.
         let of_all = tried as f64 / of as f64;
         let (samples, pixels) = (f64::from(SAMPLES_OF_NOISE), rect.area() as f64);

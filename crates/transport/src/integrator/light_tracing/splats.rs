@@ -6,16 +6,16 @@ use crate::scene::prepare::Prepared;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Light paths that a thread follows at once.
+/// Light paths that a thread follows at once, and how often that is done before what they bring is added up.
 const CHUNK: u64 = 1 << 12;
+const CHUNKS_AT_ONCE: usize = 64;
 
 /// What one light path brings to one pixel.
 #[derive(Clone, Copy, Debug)]
 struct Splat {
     /// Number of the pixel within the rectangle, row by row.
-    pub pixel: u32,
-    pub sample: u32,
-    pub xyz: [f64; 3],
+    pixel: u32,
+    xyz: [f64; 3],
 }
 
 /// What the light paths of some samples bring to the pixels of a rectangle.
@@ -43,53 +43,43 @@ impl Splats {
     };
 
     /// Follows all light paths of some samples. The sums are the same for every number of threads.
-    pub(super) fn new(prepared: &Prepared, casters: &Casters, samples: &[Range<u32>], rect: PixelRect) -> Self {
+    pub(super) fn new(prepared: &Prepared, casters: &Casters, samples: Range<u32>, rect: PixelRect) -> Self {
         let of = casters.paths_of_sample(prepared);
-        Self::traced(prepared, casters, prepared.scene.integrator.seed, (of, samples), rect)
+        Self::of_paths(prepared, casters, prepared.scene.integrator.seed, (of, samples), rect)
     }
 
     /// The same of as many light paths in each sample, with random numbers of a seed.
-    pub(super) fn tried(
+    pub(super) fn of_paths(
         prepared: &Prepared,
         casters: &Casters,
         seed: u64,
         (of, samples): (u64, Range<u32>),
         rect: PixelRect,
     ) -> Self {
-        Self::traced(prepared, casters, seed, (of, &[samples]), rect)
-    }
-
-    fn traced(
-        prepared: &Prepared,
-        casters: &Casters,
-        seed: u64,
-        (of, samples): (u64, &[Range<u32>]),
-        rect: PixelRect,
-    ) -> Self {
-        let chunks_of_sample = of.div_ceil(CHUNK);
         let trace = prepared.kernel().trace_light_paths;
-        let chunks: Vec<(u32, Range<u64>)> = samples
-            .iter()
-            .cloned()
-            .flatten()
-            .flat_map(|sample| {
-                (0..chunks_of_sample).map(move |chunk| (sample, chunk * CHUNK..((chunk + 1) * CHUNK).min(of)))
-            })
-            .collect();
-        let traced: Vec<(Vec<Splat>, u64)> = chunks
-            .into_par_iter()
-            .map(|(sample, numbers)| {
-                let (mut counters, mut splats) = (Counters::default(), Vec::new());
-                trace(prepared, casters, seed, (numbers, of), sample, &mut counters, &mut |connection| {
-                    prepared.spread(&connection, sample, rect, &mut splats);
-                });
-                (splats, counters.rays + counters.shadow_rays)
-            })
-            .collect();
-        let rays = traced.iter().map(|(_, rays)| rays).sum();
-        let paths = of * samples.iter().map(|samples| samples.len() as u64).sum::<u64>();
-        let (starts, entries) = sorted(rect.area() as usize, traced.iter().flat_map(|(splats, _)| splats));
-        Self { rect, starts, entries, rays, paths }
+        let chunks_of =
+            |sample: u32| (0..of).step_by(CHUNK as usize).map(move |first| (sample, first..(first + CHUNK).min(of)));
+        let chunks: Vec<(u32, Range<u64>)> = samples.clone().flat_map(chunks_of).collect();
+        let mut sums = SampleSums::new(rect, samples.start);
+        let mut rays = 0;
+        for at_once in chunks.chunks(CHUNKS_AT_ONCE) {
+            let traced: Vec<(Vec<Splat>, u64)> = at_once
+                .par_iter()
+                .map(|(sample, numbers)| {
+                    let (mut counters, mut splats) = (Counters::default(), Vec::new());
+                    trace(prepared, casters, seed, (numbers.clone(), of), *sample, &mut counters, &mut |connection| {
+                        prepared.spread(&connection, rect, &mut splats);
+                    });
+                    (splats, counters.rays + counters.shadow_rays)
+                })
+                .collect();
+            for ((sample, _), (splats, of_chunk)) in at_once.iter().zip(&traced) {
+                sums.add(*sample, splats);
+                rays += of_chunk;
+            }
+        }
+        let (starts, entries) = sums.sorted();
+        Self { rect, starts, entries, rays, paths: of * samples.len() as u64 }
     }
 
     /// What a sample of a pixel receives, CIE XYZ.
@@ -117,37 +107,68 @@ impl Splats {
     }
 }
 
-/// Sorts by pixel, keeps the order otherwise, and adds up what a pixel receives in one sample.
-fn sorted<'s>(pixels: usize, splats: impl Iterator<Item = &'s Splat> + Clone) -> (Vec<usize>, Vec<(u32, [f64; 3])>) {
-    let mut starts = vec![0; pixels + 1];
-    splats.clone().for_each(|splat| starts[splat.pixel as usize + 1] += 1);
-    for pixel in 0..pixels {
-        starts[pixel + 1] += starts[pixel];
+/// What samples bring, one after the other: as much memory as the picture has pixels, and as the samples that reach them.
+struct SampleSums {
+    /// Of the sample that is under way: what each pixel has received, and which pixels have.
+    under_way: Vec<[f64; 3]>,
+    touched: Vec<u32>,
+    sample: u32,
+    /// Of finished samples: pixel, sample, CIE XYZ.
+    finished: Vec<(u32, u32, [f64; 3])>,
+}
+
+impl SampleSums {
+    fn new(rect: PixelRect, sample: u32) -> Self {
+        Self { under_way: vec![[0.0; 3]; rect.area() as usize], touched: Vec::new(), sample, finished: Vec::new() }
     }
-    let mut next = starts.clone();
-    let mut all = vec![(0, [0.0; 3]); starts[pixels]];
-    for splat in splats {
-        let place = &mut next[splat.pixel as usize];
-        all[*place] = (splat.sample, splat.xyz);
-        *place += 1;
+
+    /// Adds a part of a sample, in the order of its light paths.
+    fn add(&mut self, sample: u32, splats: &[Splat]) {
+        if sample != self.sample {
+            self.finish();
+            self.sample = sample;
+        }
+        for splat in splats {
+            let sum = &mut self.under_way[splat.pixel as usize];
+            if *sum == [0.0; 3] {
+                self.touched.push(splat.pixel);
+            }
+            (0..3).for_each(|c| sum[c] += splat.xyz[c]);
+        }
     }
-    let (mut entries, mut merged): (Vec<(u32, [f64; 3])>, _) = (Vec::new(), vec![0]);
-    for bounds in starts.windows(2) {
-        let first = entries.len();
-        for &(sample, xyz) in &all[bounds[0]..bounds[1]] {
-            match entries[first..].last_mut() {
-                Some((last, sum)) if *last == sample => (0..3).for_each(|c| sum[c] += xyz[c]),
-                _ => entries.push((sample, xyz)),
+
+    fn finish(&mut self) {
+        for pixel in self.touched.drain(..) {
+            let xyz = std::mem::take(&mut self.under_way[pixel as usize]);
+            // One that has received nothing but zeros is named several times.
+            if xyz != [0.0; 3] {
+                self.finished.push((pixel, self.sample, xyz));
             }
         }
-        merged.push(entries.len());
     }
-    (merged, entries)
+
+    /// By pixel, then by sample: where the entries of each pixel begin, and the entries.
+    fn sorted(mut self) -> (Vec<usize>, Vec<(u32, [f64; 3])>) {
+        self.finish();
+        let mut starts = vec![0; self.under_way.len() + 1];
+        self.finished.iter().for_each(|(pixel, ..)| starts[*pixel as usize + 1] += 1);
+        for pixel in 0..self.under_way.len() {
+            starts[pixel + 1] += starts[pixel];
+        }
+        let mut next = starts.clone();
+        let mut entries = vec![(0, [0.0; 3]); self.finished.len()];
+        for (pixel, sample, xyz) in self.finished {
+            let place = &mut next[pixel as usize];
+            entries[*place] = (sample, xyz);
+            *place += 1;
+        }
+        (starts, entries)
+    }
 }
 
 impl Prepared {
     /// What each pixel of a rectangle receives of a light path: by the density of its filter.
-    fn spread(&self, connection: &Connection, sample: u32, rect: PixelRect, splats: &mut Vec<Splat>) {
+    fn spread(&self, connection: &Connection, rect: PixelRect, splats: &mut Vec<Splat>) {
         let reach = crate::film::filter::FilterSampler::reach_px(&self.scene.film.filter);
         // The centre of a pixel is half a pixel after its number.
         let near = |place: f64, first: u32, end: u32| {
@@ -162,7 +183,7 @@ impl Prepared {
                 let share = of_row * self.filter.density(column - 0.5 - x as f64);
                 if share > 0.0 {
                     let pixel = (y as u32 - rect.y0) * (rect.x1 - rect.x0) + (x as u32 - rect.x0);
-                    splats.push(Splat { pixel, sample, xyz: connection.xyz.map(|v| v * share) });
+                    splats.push(Splat { pixel, xyz: connection.xyz.map(|v| v * share) });
                 }
             }
         }

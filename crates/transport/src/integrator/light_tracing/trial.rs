@@ -87,7 +87,7 @@ pub(crate) fn light_paths_per_pixel(
 ) -> Option<Found> {
     let tried = Tried::of(prepared);
     let rect = prepared.whole_rect();
-    let splats = Splats::tried(prepared, casters, seed, (PATHS.min(rect.area()), 0..LIGHT_SAMPLES), rect);
+    let splats = Splats::of_paths(prepared, casters, seed, (PATHS.min(rect.area()), 0..LIGHT_SAMPLES), rect);
     // With one path for each pixel, as on the picture.
     let of_path = splats.paths as f64 / (f64::from(LIGHT_SAMPLES) * rect.area() as f64);
     let cells = whole.moments.len();
