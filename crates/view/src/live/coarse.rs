@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use etalon_transport::film::XyzSum;
-use etalon_transport::{PixelSamples, Prepared};
+use etalon_transport::{PixelSamples, Prepared, Splats};
 use rayon::prelude::*;
 
 use crate::picture::CoarsePixels;
@@ -60,7 +60,6 @@ pub(crate) fn trace(
     let mut sums = vec![XyzSum::default(); pixels.len() * replicates as usize];
     let stopped = AtomicBool::new(false);
     pool.install(|| {
-        let splats = prepared.splats(0..samples, prepared.whole_rect());
         pixels.par_chunks(BATCH).zip(sums.par_chunks_mut(BATCH * replicates as usize)).for_each(|(pixels, sums)| {
             if stopped.load(Ordering::Relaxed) || stop() {
                 stopped.store(true, Ordering::Relaxed);
@@ -68,7 +67,8 @@ pub(crate) fn trace(
             }
             let of_pixel = |&(x, y): &(u32, u32)| PixelSamples { x, y, samples: 0..samples };
             let all: Vec<PixelSamples> = pixels.iter().map(of_pixel).collect();
-            prepared.render_pixels(&all, &splats, sums, &mut vec![0; all.len()]);
+            // What light paths bring comes with the first whole pass: they would take as long as that.
+            prepared.render_pixels(&all, &Splats::NONE, sums, &mut vec![0; all.len()]);
         });
     });
     (!stopped.into_inner()).then_some(CoarsePixels {
