@@ -73,8 +73,8 @@ pub mod wavelength;
 
 pub use etalon_geometry::warp;
 pub use film::accuracy::{self, ImageError};
-pub use film::{Band, Counters, Film, NonFinite, Pixel, PixelRect, TileSums};
-pub use integrator::light_tracing::{LIGHT_RAY, LightPathsNoise, Splats};
+pub use film::{Band, Counters, Film, NonFinite, Pixel, PixelRect, Splats, TileSums};
+pub use integrator::light_tracing::{LIGHT_RAY, LightPathsNoise};
 pub use integrator::tracer::PixelSamples;
 pub use integrator::{observer, replay};
 pub use media::DEPTH as MOST_SOLIDS_AT_ONCE;

@@ -21,9 +21,9 @@ mod stream;
 #[cfg(test)]
 mod tests;
 
+use crate::film::Splats;
 use crate::film::{Counters, Sums};
 use crate::integrator::film_entry::{FilmEntry, Received};
-use crate::integrator::light_tracing::Splats;
 use crate::integrator::reuse::Blocks;
 use crate::integrator::tracer::{PixelSamples, Tracer};
 use crate::integrator::wavelength_lanes::WavelengthModel;

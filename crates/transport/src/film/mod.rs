@@ -4,11 +4,13 @@ pub mod accuracy;
 mod bands;
 mod counters;
 pub mod filter;
+mod splats;
 mod stokes;
 mod tile;
 
 pub use bands::{Band, BandSum};
 pub use counters::{Counters, NONFINITE_LOCATED, NonFinite};
+pub use splats::Splats;
 pub use stokes::StokesSum;
 pub(crate) use tile::Sums;
 pub use tile::TileSums;

@@ -1,8 +1,6 @@
 //! All that a film keeps of a rectangle of pixels: to be added to, put down in bytes and taken up.
 
-use crate::integrator::light_tracing::Splats;
-
-use super::{BandSum, Film, Pixel, PixelRect, StokesSum, XyzSum};
+use super::{BandSum, Film, Pixel, PixelRect, Splats, StokesSum, XyzSum};
 
 /// All that a film keeps of a rectangle of pixels, row by row: exactly, so that a picture can be put down and taken up.
 #[derive(Clone, Debug, Default, PartialEq)]

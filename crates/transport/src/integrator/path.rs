@@ -93,7 +93,7 @@ pub(super) enum Step {
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum LightTraced {
     /// That which comes by way of casters to a vertex that scatters.
-    AfterCasters,
+    AfterSpecular,
     /// That which it meets next as well, since it came by way of casters from such a vertex.
     Now,
     /// None: the camera sees a mirror or glass first, or something was in the way that light paths do not go through.
@@ -171,7 +171,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             eta_squared: 1.0,
             guiding: 1.0,
             step: Step::Unshared,
-            light_traced: LightTraced::AfterCasters,
+            light_traced: LightTraced::AfterSpecular,
             stack: MediumStack::NOTHING,
             walk: Walk::default(),
             passes: 0,
@@ -201,7 +201,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         self.eta_squared = 1.0;
         self.guiding = 1.0;
         self.step = Step::Unshared;
-        self.light_traced = LightTraced::AfterCasters;
+        self.light_traced = LightTraced::AfterSpecular;
         if let Some(stack) = start.stack {
             self.stack = stack;
         }
@@ -332,7 +332,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
 
     /// Whether light paths bring what comes by way of casters to the vertex at which it is, where that scatters.
     #[inline(always)]
-    pub(super) fn is_light_traced_after_casters(&self, world: &World<'a>) -> bool {
+    pub(super) fn is_light_traced_after_specular(&self, world: &World<'a>) -> bool {
         world.casters.is_some() && self.light_traced != LightTraced::Never
     }
 

@@ -174,7 +174,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         if let Some(casters) = world.casters {
             self.light_traced = match self.light_traced {
                 LightTraced::Never => LightTraced::Never,
-                _ if !delta => LightTraced::AfterCasters,
+                _ if !delta => LightTraced::AfterSpecular,
                 _ if self.vertex > 0 && casters.casts(vertex.surface.object) => LightTraced::Now,
                 _ => LightTraced::Never,
             };

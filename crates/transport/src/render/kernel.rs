@@ -6,7 +6,7 @@ use crate::guiding::NO_TARGETS;
 use crate::integrator::connection_trial::{ConnectionTrial, try_connections};
 use crate::integrator::film_entry::{FilmEntry, SampleId};
 use crate::integrator::light_tracing::trial::{CameraTrial, try_camera_paths};
-use crate::integrator::light_tracing::{Casters, Connection, trace_light_path};
+use crate::integrator::light_tracing::{Connection, SpecularObjects, trace_light_path};
 use crate::integrator::replay::{Replay, replay};
 use crate::integrator::reuse;
 use crate::integrator::tracer::{PixelSamples, Tracer};
@@ -25,7 +25,7 @@ pub(crate) type RenderPixels = fn(&Prepared, &[PixelSamples], Sums<'_>, &mut [u6
 
 /// Follows the light paths of some numbers, of so many, of one sample, with random numbers of a seed. What each brings is given to the last.
 pub(crate) type TraceLightPaths =
-    fn(&Prepared, &Casters, u64, (Range<u64>, u64), u32, &mut Counters, &mut dyn FnMut(Connection));
+    fn(&Prepared, &SpecularObjects, u64, (Range<u64>, u64), u32, &mut Counters, &mut dyn FnMut(Connection));
 
 /// The path loop for one model of wavelengths.
 pub(crate) struct Kernel {
@@ -91,7 +91,7 @@ impl Prepared {
 
 fn trace_light_paths<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
     prepared: &Prepared,
-    casters: &Casters,
+    casters: &SpecularObjects,
     seed: u64,
     (numbers, of): (Range<u64>, u64),
     sample: u32,

@@ -4,8 +4,8 @@ pub mod features;
 pub(crate) mod kernel;
 pub mod tune;
 
+use crate::film::Splats;
 use crate::film::{Counters, Film, PixelRect, Sums, TileSums, XyzSum};
-use crate::integrator::light_tracing::Splats;
 use crate::integrator::replay::Replay;
 use crate::integrator::tracer::PixelSamples;
 use crate::plan::{LaneModel, PathLoop};

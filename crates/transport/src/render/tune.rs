@@ -1,7 +1,7 @@
 //! From a scene to what is rendered: prepared, then tuned by trials before the picture.
 
 use crate::guiding::{GuidedBy, USUAL_SHARES};
-use crate::integrator::light_tracing::Casters;
+use crate::integrator::light_tracing::SpecularObjects;
 use crate::integrator::light_tracing::trial::light_paths_per_pixel;
 use crate::integrator::trial::{SHARES, TRIED};
 use crate::plan::{EffectName, LaneModel, Study};
@@ -60,7 +60,7 @@ pub fn prepare_frame(scene: &Scene, study: &Study, earlier: Option<Prepared>) ->
         // The same for each seed of a scene, so that pictures of different ones are drawn alike; and none that anyone would choose.
         prepared.tune(mix(0x6361_7573_7469_6373));
     } else if prepared.scene.integrator.light_tracing == LightTracing::Always {
-        prepared.casters = prepared.wanted_casters();
+        prepared.casters = prepared.wanted_light_tracing();
     }
     let warnings = coincidence::warnings(&prepared);
     prepared.warnings.extend(warnings);
@@ -90,7 +90,7 @@ impl Prepared {
     /// Follows light from the lamps where that leaves less noise for the time than the best that camera paths do alone. What these are
     /// guided by is then decided anew: it is no longer for them to find what light paths bring.
     fn tune_light_tracing(&mut self, seed: u64) {
-        let Some(mut casters) = self.wanted_casters() else { return };
+        let Some(mut casters) = self.wanted_light_tracing() else { return };
         let try_camera_paths = |prepared: &Self| (prepared.kernel().try_camera_paths)(prepared, seed);
         let whole = try_camera_paths(self);
         self.casters = Some(casters.clone());
@@ -105,12 +105,12 @@ impl Prepared {
     }
 
     /// The casters of a scene in which light paths are wanted and possible. Warns where they are asked for and not possible.
-    fn wanted_casters(&mut self) -> Option<Casters> {
+    fn wanted_light_tracing(&mut self) -> Option<SpecularObjects> {
         let wanted = self.scene.integrator.light_tracing;
         if wanted == LightTracing::Never {
             return None;
         }
-        match Casters::of(self) {
+        match SpecularObjects::of(self) {
             Ok(casters) => Some(casters),
             Err(reason) if wanted == LightTracing::Always => {
                 self.warnings.push(format!("no light paths are traced, although the scene asks for them: {reason}"));

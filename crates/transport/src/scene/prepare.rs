@@ -6,7 +6,7 @@ use crate::camera::{Camera, Moving, PreparedLens};
 use crate::film::filter::FilterSampler;
 use crate::frame::{Affine, SceneFrame, mapped};
 use crate::guiding::{GuidedTargets, RefractingBodies, SpecularConnections};
-use crate::integrator::light_tracing::Casters;
+use crate::integrator::light_tracing::SpecularObjects;
 use crate::light::{Environment, Light, LightTable, weighted_sum};
 use crate::media::{Interior, Media, Medium, Participating, Solid};
 use crate::plan::{EffectName, LaneModel, OneLaneFilm, Plan, Study, simulated};
@@ -58,7 +58,7 @@ pub struct Prepared {
     pub(crate) specular_connections: Option<SpecularConnections>,
     pub(crate) refracting_bodies: Option<RefractingBodies>,
     /// Set by the trial before a picture.
-    pub(crate) casters: Option<Casters>,
+    pub(crate) casters: Option<SpecularObjects>,
     /// Whether a trial found no use in what goes through them.
     pub(crate) shadow_rays_stop_at_glass: bool,
     plan: Plan,

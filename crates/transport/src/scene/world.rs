@@ -1,7 +1,7 @@
 //! The scene as paths see it.
 
 use crate::guiding::{GuidedTargets, RefractingBodies, SpecularConnections};
-use crate::integrator::light_tracing::Casters;
+use crate::integrator::light_tracing::SpecularObjects;
 use crate::light::{Environment, EnvironmentLight, LightTable};
 use crate::media::{Media, Participating};
 use crate::scene::shading_tables::ShadingTables;
@@ -45,7 +45,7 @@ pub(crate) struct World<'a> {
     /// The glass that shadow rays go through, if they do.
     pub refracting_bodies: Option<&'a RefractingBodies>,
     /// The objects whose light is followed from the lamps, if it is.
-    pub casters: Option<&'a Casters>,
+    pub casters: Option<&'a SpecularObjects>,
     /// What diffuse surfaces draw directions toward.
     pub guided_targets: &'a GuidedTargets,
 }

@@ -1,6 +1,6 @@
 //! One path from a lamp, by way of casters, to the surfaces that it lights; each of them is connected to the camera.
 
-use super::Casters;
+use super::SpecularObjects;
 use crate::bsdf::lambert;
 use crate::film::Counters;
 use crate::integrator::tracer::Tracer;
@@ -36,7 +36,7 @@ struct Beginning<'a, const N: usize> {
 /// Follows light path number `number` of the `of` of a sample. What it brings is given to `put`.
 pub(crate) fn trace_light_path<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
     tracer: &Tracer<'a>,
-    casters: &Casters,
+    casters: &SpecularObjects,
     (number, of): (u64, u64),
     sample: u32,
     counters: &mut Counters,
@@ -83,7 +83,7 @@ pub(crate) fn trace_light_path<'a, M: WavelengthModel<N>, P: Polarisation<N>, co
 /// Draws a point of the casters, and a lamp that lights it.
 fn begin<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
     tracer: &Tracer<'a>,
-    casters: &Casters,
+    casters: &SpecularObjects,
     path: &mut Path<'a, M, P, N>,
     (number, of): (u64, u64),
     sampler: &Sampler,

@@ -14,7 +14,7 @@
 //! lamp. From the first surface on that is no caster, each vertex is connected to a point on the lens.
 //!
 //! **The film.** A sample of the picture has as many light paths as it has pixels, or a fixed multiple of that. What they bring to a pixel is added
-//! to the camera path of the same number ([`Splats`]). So a sample stays a function of the scene, its seed and its number, and replicates stay
+//! to the camera path of the same number ([`Splats`](crate::film::Splats)). So a sample stays a function of the scene, its seed and its number, and replicates stay
 //! independent. Each part of a picture traces the light paths of its samples anew, whatever its tiles.
 //!
 //! **Reciprocity.** Where a surface scatters, both directions are known, and the camera's own formula is used: shading normals need no correction.
@@ -29,11 +29,10 @@ mod tests;
 pub(crate) mod trial;
 
 pub(crate) use light_path::{Connection, trace_light_path};
-pub use splats::Splats;
 
 use crate::bsdf::Bsdf;
-use crate::film::PixelRect;
 use crate::film::filter::FilterSampler;
+use crate::film::{PixelRect, Splats};
 use crate::plan::EffectName;
 use crate::sampler::mix;
 use crate::scene::prepare::Prepared;
@@ -67,7 +66,7 @@ pub const LIGHT_RAY: f64 = 2.0;
 
 /// The objects that throw light, and how it is followed.
 #[derive(Clone, Debug)]
-pub(crate) struct Casters {
+pub(crate) struct SpecularObjects {
     /// Of each object.
     casts: Vec<bool>,
     /// Their shapes, and the area of each with all before it.
@@ -79,7 +78,7 @@ pub(crate) struct Casters {
     pub paths_per_pixel: f64,
 }
 
-impl Casters {
+impl SpecularObjects {
     /// Those of a scene, or why light paths are not possible in it.
     pub(crate) fn of(prepared: &Prepared) -> Result<Self, &'static str> {
         let plan = prepared.plan();
@@ -187,7 +186,7 @@ impl Prepared {
     pub fn splats(&self, samples: Range<u32>, rect: PixelRect) -> Splats {
         match &self.casters {
             None => Splats::NONE,
-            Some(casters) => Splats::new(self, casters, samples, rect),
+            Some(casters) => splats::of_samples(self, casters, samples, rect),
         }
     }
 
@@ -211,7 +210,7 @@ impl Prepared {
         let seed = mix(self.scene.integrator.seed ^ 0x6c69_6768_7473);
         let of = casters.paths_of_sample(self);
         let tried = of.min(PATHS_OF_ROUND / u64::from(SAMPLES_OF_NOISE));
-        let splats = Splats::of_paths(self, casters, seed, (tried, 0..SAMPLES_OF_NOISE), rect);
+        let splats = splats::of_paths(self, casters, seed, (tried, 0..SAMPLES_OF_NOISE), rect);
         // What one path brings does not depend on how many there are, but for their number in its weight.
         let of_all = tried as f64 / of as f64;
         let (samples, pixels) = (f64::from(SAMPLES_OF_NOISE), rect.area() as f64);

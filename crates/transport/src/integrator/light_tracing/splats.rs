@@ -1,7 +1,7 @@
-//! What light paths bring to pixels, sorted by pixel and sample.
+//! The light paths of samples, and what they bring to pixels.
 
-use super::{Casters, Connection};
-use crate::film::{Counters, PixelRect};
+use super::{Connection, SpecularObjects};
+use crate::film::{Counters, PixelRect, Splats};
 use crate::scene::prepare::Prepared;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -18,93 +18,49 @@ struct Splat {
     xyz: [f64; 3],
 }
 
-/// What the light paths of some samples bring to the pixels of a rectangle.
-#[derive(Clone, Debug)]
-pub struct Splats {
+/// Follows all light paths of some samples. The sums are the same for every number of threads.
+pub(super) fn of_samples(
+    prepared: &Prepared,
+    casters: &SpecularObjects,
+    samples: Range<u32>,
     rect: PixelRect,
-    /// Where the entries of each pixel begin, and the end of the last; empty where no light paths are traced.
-    starts: Vec<usize>,
-    /// By pixel, then by the place of the sample among those asked for: number of the sample, CIE XYZ.
-    entries: Vec<(u32, [f64; 3])>,
-    /// Rays of all kinds that the light paths took, and how many paths there were.
-    pub rays: u64,
-    /// See `rays`.
-    pub paths: u64,
+) -> Splats {
+    let of = casters.paths_of_sample(prepared);
+    of_paths(prepared, casters, prepared.scene.integrator.seed, (of, samples), rect)
 }
 
-impl Splats {
-    /// Where no light paths are traced.
-    pub const NONE: Self = Self {
-        rect: PixelRect { x0: 0, y0: 0, x1: 0, y1: 0 },
-        starts: Vec::new(),
-        entries: Vec::new(),
-        rays: 0,
-        paths: 0,
-    };
-
-    /// Follows all light paths of some samples. The sums are the same for every number of threads.
-    pub(super) fn new(prepared: &Prepared, casters: &Casters, samples: Range<u32>, rect: PixelRect) -> Self {
-        let of = casters.paths_of_sample(prepared);
-        Self::of_paths(prepared, casters, prepared.scene.integrator.seed, (of, samples), rect)
-    }
-
-    /// The same of as many light paths in each sample, with random numbers of a seed.
-    pub(super) fn of_paths(
-        prepared: &Prepared,
-        casters: &Casters,
-        seed: u64,
-        (of, samples): (u64, Range<u32>),
-        rect: PixelRect,
-    ) -> Self {
-        let trace = prepared.kernel().trace_light_paths;
-        let chunks_of =
-            |sample: u32| (0..of).step_by(CHUNK as usize).map(move |first| (sample, first..(first + CHUNK).min(of)));
-        let chunks: Vec<(u32, Range<u64>)> = samples.clone().flat_map(chunks_of).collect();
-        let mut sums = SampleSums::new(rect, samples.start);
-        let mut rays = 0;
-        for at_once in chunks.chunks(CHUNKS_AT_ONCE) {
-            let traced: Vec<(Vec<Splat>, u64)> = at_once
-                .par_iter()
-                .map(|(sample, numbers)| {
-                    let (mut counters, mut splats) = (Counters::default(), Vec::new());
-                    trace(prepared, casters, seed, (numbers.clone(), of), *sample, &mut counters, &mut |connection| {
-                        prepared.spread(&connection, rect, &mut splats);
-                    });
-                    (splats, counters.rays + counters.shadow_rays)
-                })
-                .collect();
-            for ((sample, _), (splats, of_chunk)) in at_once.iter().zip(&traced) {
-                sums.add(*sample, splats);
-                rays += of_chunk;
-            }
+/// The same of as many light paths in each sample, with random numbers of a seed.
+pub(super) fn of_paths(
+    prepared: &Prepared,
+    casters: &SpecularObjects,
+    seed: u64,
+    (of, samples): (u64, Range<u32>),
+    rect: PixelRect,
+) -> Splats {
+    let trace = prepared.kernel().trace_light_paths;
+    let chunks_of =
+        |sample: u32| (0..of).step_by(CHUNK as usize).map(move |first| (sample, first..(first + CHUNK).min(of)));
+    let chunks: Vec<(u32, Range<u64>)> = samples.clone().flat_map(chunks_of).collect();
+    let mut sums = SampleSums::new(rect, samples.start);
+    let mut rays = 0;
+    for at_once in chunks.chunks(CHUNKS_AT_ONCE) {
+        let traced: Vec<(Vec<Splat>, u64)> = at_once
+            .par_iter()
+            .map(|(sample, numbers)| {
+                let (mut counters, mut splats) = (Counters::default(), Vec::new());
+                trace(prepared, casters, seed, (numbers.clone(), of), *sample, &mut counters, &mut |connection| {
+                    prepared.spread(&connection, rect, &mut splats);
+                });
+                (splats, counters.rays + counters.shadow_rays)
+            })
+            .collect();
+        for ((sample, _), (splats, of_chunk)) in at_once.iter().zip(&traced) {
+            sums.add(*sample, splats);
+            rays += of_chunk;
         }
-        let (starts, entries) = sums.sorted();
-        Self { rect, starts, entries, rays, paths: of * samples.len() as u64 }
     }
-
-    /// What a sample of a pixel receives, CIE XYZ.
-    #[inline]
-    pub(crate) fn of(&self, x: u32, y: u32, sample: u32) -> Option<[f64; 3]> {
-        let rect = &self.rect;
-        if self.entries.is_empty() || x < rect.x0 || x >= rect.x1 || y < rect.y0 || y >= rect.y1 {
-            return None;
-        }
-        let pixel = ((y - rect.y0) * (rect.x1 - rect.x0) + (x - rect.x0)) as usize;
-        let of_pixel = &self.entries[self.starts[pixel]..self.starts[pixel + 1]];
-        let place = of_pixel.binary_search_by_key(&sample, |(sample, _)| *sample).ok()?;
-        Some(of_pixel[place].1)
-    }
-
-    /// What each pixel receives, row by row: the samples in which it receives anything, and CIE XYZ.
-    pub(super) fn by_pixel(&self) -> impl Iterator<Item = &[(u32, [f64; 3])]> {
-        self.starts.windows(2).map(|bounds| &self.entries[bounds[0]..bounds[1]])
-    }
-
-    /// The same one by one: column, row, CIE XYZ.
-    pub(super) fn all(&self) -> impl Iterator<Item = (u32, u32, [f64; 3])> + '_ {
-        let pixels = self.rect.pixels().zip(self.by_pixel());
-        pixels.flat_map(|((x, y), of_pixel)| of_pixel.iter().map(move |&(_, xyz)| (x, y, xyz)))
-    }
+    let (starts, entries) = sums.sorted();
+    Splats { rect, starts, entries, rays, paths: of * samples.len() as u64 }
 }
 
 /// What samples bring, one after the other: as much memory as the picture has pixels, and as the samples that reach them.

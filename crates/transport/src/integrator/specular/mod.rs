@@ -27,7 +27,7 @@ use super::Path;
 use super::vertex::Vertex;
 use crate::film::Counters;
 use crate::guiding::{SeedNumbers, SpecularConnections};
-use crate::integrator::light_tracing::Casters;
+use crate::integrator::light_tracing::SpecularObjects;
 use crate::integrator::observer::{Found, Observer};
 use crate::integrator::wavelength_lanes::WavelengthModel;
 use crate::polarisation::Polarisation;
@@ -74,9 +74,9 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         counters: &mut Counters,
         observer: &mut impl Observer<N>,
     ) {
-        let finds_sources = |casters: &Casters| casters.finds_sources;
+        let finds_sources = |casters: &SpecularObjects| casters.finds_sources;
         if let Some(connections) = world.specular_connections
-            && !(world.casters.is_some_and(finds_sources) && self.is_light_traced_after_casters(world))
+            && !(world.casters.is_some_and(finds_sources) && self.is_light_traced_after_specular(world))
         {
             let first = sampler.connection_set(self.vertex);
             let numbers = Numbers { first, further: sampler.connection_numbers(self.vertex) };

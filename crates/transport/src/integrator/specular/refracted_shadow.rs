@@ -59,7 +59,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         counters: &mut Counters,
         observer: &mut impl Observer<N>,
     ) {
-        if !self.is_light_traced_after_casters(world) && may_meet_glass(world, vertex, draw) {
+        if !self.is_light_traced_after_specular(world) && may_meet_glass(world, vertex, draw) {
             self.follow_shadow_ray(world, vertex, draw, sampler, counters, observer);
         }
     }
