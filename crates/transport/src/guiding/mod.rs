@@ -19,6 +19,7 @@ mod hull;
 mod mixture;
 mod refracting_bodies;
 mod specular_image;
+mod specular_objects;
 #[cfg(test)]
 mod tests;
 
@@ -29,6 +30,7 @@ pub(crate) use mixture::{
 };
 pub(crate) use refracting_bodies::RefractingBodies;
 pub(crate) use specular_image::{Ball, Eye, Shows, SpecularImage};
+pub(crate) use specular_objects::SpecularObjects;
 
 use crate::bsdf::Bsdf;
 use crate::light::{LightTable, visible_sum};

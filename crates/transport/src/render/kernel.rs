@@ -2,11 +2,11 @@
 
 use crate::batch::render_batch;
 use crate::film::{Counters, Sums};
-use crate::guiding::NO_TARGETS;
+use crate::guiding::{NO_TARGETS, SpecularObjects};
 use crate::integrator::connection_trial::{ConnectionTrial, try_connections};
 use crate::integrator::film_entry::{FilmEntry, SampleId};
 use crate::integrator::light_tracing::trial::{CameraTrial, try_camera_paths};
-use crate::integrator::light_tracing::{Connection, SpecularObjects, trace_light_path};
+use crate::integrator::light_tracing::{Connection, trace_light_path};
 use crate::integrator::replay::{Replay, replay};
 use crate::integrator::reuse;
 use crate::integrator::tracer::{PixelSamples, Tracer};

@@ -1,7 +1,8 @@
 //! From a scene to what is rendered: prepared, then tuned by trials before the picture.
 
+use crate::guiding::SpecularObjects;
 use crate::guiding::{GuidedBy, USUAL_SHARES};
-use crate::integrator::light_tracing::SpecularObjects;
+use crate::integrator::light_tracing::objects_that_throw_light;
 use crate::integrator::light_tracing::trial::light_paths_per_pixel;
 use crate::integrator::trial::{SHARES, TRIED};
 use crate::plan::{EffectName, LaneModel, Study};
@@ -110,7 +111,7 @@ impl Prepared {
         if wanted == LightTracing::Never {
             return None;
         }
-        match SpecularObjects::of(self) {
+        match objects_that_throw_light(self) {
             Ok(casters) => Some(casters),
             Err(reason) if wanted == LightTracing::Always => {
                 self.warnings.push(format!("no light paths are traced, although the scene asks for them: {reason}"));

@@ -1,7 +1,7 @@
 //! The scene as paths see it.
 
+use crate::guiding::SpecularObjects;
 use crate::guiding::{GuidedTargets, RefractingBodies, SpecularConnections};
-use crate::integrator::light_tracing::SpecularObjects;
 use crate::light::{Environment, EnvironmentLight, LightTable};
 use crate::media::{Media, Participating};
 use crate::scene::shading_tables::ShadingTables;

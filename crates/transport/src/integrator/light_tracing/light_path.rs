@@ -1,8 +1,8 @@
 //! One path from a lamp, by way of casters, to the surfaces that it lights; each of them is connected to the camera.
 
-use super::SpecularObjects;
 use crate::bsdf::lambert;
 use crate::film::Counters;
+use crate::guiding::SpecularObjects;
 use crate::integrator::tracer::Tracer;
 use crate::integrator::wavelength_lanes::WavelengthModel;
 use crate::integrator::{Direction, MOST_VERTICES, Path, Start};

@@ -30,16 +30,12 @@ pub(crate) mod trial;
 
 pub(crate) use light_path::{Connection, trace_light_path};
 
-use crate::bsdf::Bsdf;
 use crate::film::filter::FilterSampler;
 use crate::film::{PixelRect, Splats};
+use crate::guiding::SpecularObjects;
 use crate::plan::EffectName;
 use crate::sampler::mix;
 use crate::scene::prepare::Prepared;
-use crate::surface::shading_geometry::Coordinates;
-use crate::surface::{ObjectSurface, Surfaces};
-use etalon_geometry::{Geometry, PrimitiveId};
-use etalon_optics::Vec3;
 use std::ops::Range;
 
 /// Light paths that are traced before any of them reaches the film, about: a second, and some hundred megabytes.
@@ -64,121 +60,46 @@ pub struct LightPathsNoise {
 /// The time of a ray of a light path over that of others: these are cast many at once.
 pub const LIGHT_RAY: f64 = 2.0;
 
-/// The objects that throw light, and how it is followed.
-#[derive(Clone, Debug)]
-pub(crate) struct SpecularObjects {
-    /// Of each object.
-    casts: Vec<bool>,
-    /// Their shapes, and the area of each with all before it.
-    primitives: Vec<PrimitiveId>,
-    area_until: Vec<f64>,
-    /// Whether light of lamps without area is found too. Then specular connections do not look for it.
-    pub finds_sources: bool,
-    /// Light paths of a sample, for each pixel of the picture.
-    pub paths_per_pixel: f64,
+/// Those of a scene, or why light paths are not possible in it.
+pub(crate) fn objects_that_throw_light(prepared: &Prepared) -> Result<SpecularObjects, &'static str> {
+    let plan = prepared.plan();
+    // What is forced on a scene that does not need it must change no bit.
+    let needs = |effect: EffectName| plan.runs(effect) && !plan.forces(effect);
+    let reasons = [
+        (needs(EffectName::NestedDielectrics), "solids with priorities are nested"),
+        (needs(EffectName::Absorption) || needs(EffectName::Scattering), "a medium absorbs or scatters light"),
+        (prepared.has_boundaries, "a surface is the boundary of a medium"),
+        (needs(EffectName::Masks), "a surface lets a part of the light pass"),
+        (needs(EffectName::Motion), "something moves"),
+        (needs(EffectName::Fluorescence), "a surface fluoresces"),
+        (needs(EffectName::Polarisation), "polarisation is followed"),
+        (prepared.lights.is_empty(), "shadow rays aim at no light"),
+        (prepared.tracing_camera().is_compound(), "the camera has a compound lens"),
+        (prepared.path_reuse().is_some(), "pixels share paths"),
+        (!prepared.receivers.is_empty(), "meters have no picture"),
+        (prepared.scene.film.bands.is_some(), "the film keeps bands"),
+    ];
+    if let Some((_, reason)) = reasons.into_iter().find(|(is_so, _)| *is_so) {
+        return Err(reason);
+    }
+    let casters = SpecularObjects::new(&prepared.surfaces, &prepared.geometry)
+        .ok_or("there is no smooth mirror, metal or glass without shading normals that stands where it is defined")?;
+    // What shadow rays through glass find from what the camera sees is found by light paths alone.
+    let all_glass = || prepared.surfaces.others(&casters.casts).all(|of| !of.delta_transmission);
+    match prepared.refracting_bodies.is_none() || all_glass() {
+        true => Ok(casters),
+        false => Err("shadow rays go through smooth glass that has shading normals or is an instance"),
+    }
 }
 
-impl SpecularObjects {
-    /// Those of a scene, or why light paths are not possible in it.
-    pub(crate) fn of(prepared: &Prepared) -> Result<Self, &'static str> {
-        let plan = prepared.plan();
-        // What is forced on a scene that does not need it must change no bit.
-        let needs = |effect: EffectName| plan.runs(effect) && !plan.forces(effect);
-        let reasons = [
-            (needs(EffectName::NestedDielectrics), "solids with priorities are nested"),
-            (needs(EffectName::Absorption) || needs(EffectName::Scattering), "a medium absorbs or scatters light"),
-            (prepared.has_boundaries, "a surface is the boundary of a medium"),
-            (needs(EffectName::Masks), "a surface lets a part of the light pass"),
-            (needs(EffectName::Motion), "something moves"),
-            (needs(EffectName::Fluorescence), "a surface fluoresces"),
-            (needs(EffectName::Polarisation), "polarisation is followed"),
-            (prepared.lights.is_empty(), "shadow rays aim at no light"),
-            (prepared.tracing_camera().is_compound(), "the camera has a compound lens"),
-            (prepared.path_reuse().is_some(), "pixels share paths"),
-            (!prepared.receivers.is_empty(), "meters have no picture"),
-            (prepared.scene.film.bands.is_some(), "the film keeps bands"),
-        ];
-        if let Some((_, reason)) = reasons.into_iter().find(|(is_so, _)| *is_so) {
-            return Err(reason);
-        }
-        let casters = Self::new(&prepared.surfaces, &prepared.geometry).ok_or(
-            "there is no smooth mirror, metal or glass without shading normals that stands where it is defined",
-        )?;
-        // What shadow rays through glass find from what the camera sees is found by light paths alone.
-        let all_glass = || prepared.surfaces.others(&casters.casts).all(|of| !of.delta_transmission);
-        match prepared.refracting_bodies.is_none() || all_glass() {
-            true => Ok(casters),
-            false => Err("shadow rays go through smooth glass that has shading normals or is an instance"),
-        }
-    }
-
-    fn new(surfaces: &Surfaces, geometry: &Geometry) -> Option<Self> {
-        let mut casts = vec![false; surfaces.objects.len()];
-        let (mut primitives, mut area_until, mut area) = (Vec::new(), Vec::new(), 0.0);
-        // The scene's own: where instances place others, their areas are not known.
-        for (number, &object) in surfaces.object_of.first().into_iter().flatten().enumerate() {
-            let Some(of_object) = surfaces.objects.get(object as usize) else { continue };
-            let primitive = PrimitiveId(number as u32);
-            if let (true, Some(shape)) = (may_cast(surfaces, of_object), geometry.primitive(primitive).sampler()) {
-                casts[object as usize] = true;
-                area += shape.area();
-                primitives.push(primitive);
-                area_until.push(area);
-            }
-        }
-        let finds_sources = surfaces.others(&casts).all(|of| !of.has_delta());
-        (area > 0.0).then(|| Self { casts, primitives, area_until, finds_sources, paths_per_pixel: 1.0 })
-    }
-
-    /// Whether an object throws light.
-    #[inline(always)]
-    pub(crate) fn casts(&self, object: u32) -> bool {
-        self.casts[object as usize]
-    }
-
-    /// The area of all casters.
-    fn area(&self) -> f64 {
-        self.area_until.last().copied().unwrap_or(0.0)
-    }
-
-    /// A point of the casters for numbers in [0, 1); all are equally likely.
-    fn point(&self, geometry: &Geometry, u: f64, on_shape: [f64; 2]) -> Option<(PrimitiveId, Vec3<f64>)> {
-        let at = u * self.area();
-        let index = self.area_until.partition_point(|&until| until <= at).min(self.primitives.len() - 1);
-        let primitive = self.primitives[index];
-        Some((primitive, geometry.primitive(primitive).sampler()?.point(on_shape)))
-    }
-
-    /// Light paths of each sample of a picture.
-    pub(crate) fn paths_of_sample(&self, prepared: &Prepared) -> u64 {
-        ((pixels(prepared) as f64 * self.paths_per_pixel).round() as u64).max(1)
-    }
+/// Light paths of each sample of a picture.
+fn paths_of_sample(prepared: &Prepared, casters: &SpecularObjects) -> u64 {
+    ((pixels(prepared) as f64 * casters.paths_per_pixel).round() as u64).max(1)
 }
 
 fn pixels(prepared: &Prepared) -> u64 {
     let film = &prepared.scene.film;
     u64::from(film.width) * u64::from(film.height)
-}
-
-/// Whether a walk along the light may go through an object as a walk against it does.
-fn may_cast(surfaces: &Surfaces, object: &ObjectSurface) -> bool {
-    let smooth = matches!(
-        surfaces.bsdfs[object.material].untinted(),
-        Bsdf::Mirror(_) | Bsdf::Conductor(_) | Bsdf::Dielectric(_) | Bsdf::ThinDielectric(_)
-    );
-    let bent = matches!(&object.coordinates, Coordinates::Mesh(mesh) if !mesh.mesh.normals.is_empty());
-    smooth && !bent && object.relief.is_none() && object.emission.is_none()
-}
-
-impl Surfaces {
-    /// The properties of objects that are no casters.
-    fn others<'a>(&'a self, casts: &'a [bool]) -> impl Iterator<Item = &'a crate::bsdf::Properties> {
-        self.objects
-            .iter()
-            .zip(casts)
-            .filter(|(_, casts)| !**casts)
-            .map(|(object, _)| &self.properties[object.material])
-    }
 }
 
 impl Prepared {
@@ -195,7 +116,7 @@ impl Prepared {
     pub fn light_rounds(&self, samples: Range<u32>) -> Vec<Range<u32>> {
         let Some(casters) = &self.casters else { return vec![samples] };
         let reached = self.pixels_of_light_path().map_or(1, |[width, height]| u64::from(width * height));
-        let most = (PATHS_OF_ROUND / (reached * casters.paths_of_sample(self))).clamp(1, MOST_SAMPLES_OF_ROUND);
+        let most = (PATHS_OF_ROUND / (reached * paths_of_sample(self, casters))).clamp(1, MOST_SAMPLES_OF_ROUND);
         samples
             .clone()
             .step_by(most as usize)
@@ -208,7 +129,7 @@ impl Prepared {
         let casters = self.casters.as_ref()?;
         // No picture is of this seed.
         let seed = mix(self.scene.integrator.seed ^ 0x6c69_6768_7473);
-        let of = casters.paths_of_sample(self);
+        let of = paths_of_sample(self, casters);
         let tried = of.min(PATHS_OF_ROUND / u64::from(SAMPLES_OF_NOISE));
         let splats = splats::of_paths(self, casters, seed, (tried, 0..SAMPLES_OF_NOISE), rect);
         // What one path brings does not depend on how many there are, but for their number in its weight.

@@ -1,7 +1,8 @@
 //! The light paths of samples, and what they bring to pixels.
 
-use super::{Connection, SpecularObjects};
+use super::{Connection, paths_of_sample};
 use crate::film::{Counters, PixelRect, Splats};
+use crate::guiding::SpecularObjects;
 use crate::scene::prepare::Prepared;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -25,7 +26,7 @@ pub(super) fn of_samples(
     samples: Range<u32>,
     rect: PixelRect,
 ) -> Splats {
-    let of = casters.paths_of_sample(prepared);
+    let of = paths_of_sample(prepared, casters);
     of_paths(prepared, casters, prepared.scene.integrator.seed, (of, samples), rect)
 }
 

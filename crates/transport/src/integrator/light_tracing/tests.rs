@@ -1,7 +1,7 @@
 //! Light paths bring the light that camera paths drop: the same picture with and without them, on scenes with every kind of lamp, camera and
 //! surface that they know; and the same bytes however a picture is divided.
 
-use super::SpecularObjects;
+use super::objects_that_throw_light;
 use crate::film::{Film, PixelRect};
 use crate::render::{Control, Extent};
 use crate::scene::prepare::Prepared;
@@ -261,7 +261,7 @@ fn why_no_light_paths_are_traced_is_told() {
 fn paths_begin_evenly_over_the_area_of_the_casters() {
     let scene = scene(json!({}), lamp(0.1), json!([sphere([0.0, 0.45, 0.0], 0.3, "glass"), wall("mirror")]), json!({}));
     let prepared = prepared(&scene, &Study::default());
-    let casters = SpecularObjects::of(&prepared).unwrap();
+    let casters = objects_that_throw_light(&prepared).unwrap();
     let count = 10_000;
     let (mut on_ball, mut upper) = (0, 0);
     for i in 0..count {

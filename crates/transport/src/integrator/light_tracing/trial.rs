@@ -3,8 +3,9 @@
 //! Some pixels are traced twice, with all that camera paths find and without what light paths find. Some light paths are followed beside that.
 //! One trial tells the noise for every number of light paths: with n times as many, their variance is 1/n.
 
-use super::{LIGHT_RAY, SpecularObjects, splats};
+use super::{LIGHT_RAY, splats};
 use crate::film::Counters;
+use crate::guiding::SpecularObjects;
 use crate::integrator::tracer::Tracer;
 use crate::integrator::trial::{SAMPLES, Tried};
 use crate::integrator::wavelength_lanes::WavelengthModel;
@@ -71,7 +72,7 @@ struct Cost {
 
 /// What a trial found.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Measured {
+pub(crate) struct LightTrial {
     /// The number of light paths for each pixel that leaves the least variance for the time.
     pub per_pixel: f64,
     /// Whether that is less than camera paths leave alone.
@@ -84,7 +85,7 @@ pub(crate) fn light_paths_per_pixel(
     casters: &SpecularObjects,
     seed: u64,
     [whole, rest]: [&CameraTrial; 2],
-) -> Option<Measured> {
+) -> Option<LightTrial> {
     let tried = Tried::of(prepared);
     let rect = prepared.whole_rect();
     let splats = splats::of_paths(prepared, casters, seed, (PATHS.min(rect.area()), 0..LIGHT_SAMPLES), rect);
@@ -126,14 +127,14 @@ pub(crate) fn light_paths_per_pixel(
     Some(best(cost_of(whole), cost_of(rest), of_light))
 }
 
-fn best(whole: Cost, rest: Cost, of_light: Cost) -> Measured {
+fn best(whole: Cost, rest: Cost, of_light: Cost) -> LightTrial {
     let product =
         |per_pixel: f64| (rest.variance + of_light.variance / per_pixel) * (rest.rays + of_light.rays * per_pixel);
     let per_pixel = PER_PIXEL.into_iter().min_by(|a, b| product(*a).total_cmp(&product(*b))).unwrap_or(1.0);
     let all = rest.light + of_light.light;
     let missed = whole.light - rest.light < FOUND * of_light.light && of_light.light > OF_ALL * all;
     let is_worth_it = missed || product(per_pixel) < WORTH_IT * whole.variance * whole.rays;
-    Measured { per_pixel, is_worth_it }
+    LightTrial { per_pixel, is_worth_it }
 }
 
 #[cfg(test)]
