@@ -55,6 +55,18 @@ pub enum Adaptivity {
     Never,
 }
 
+impl Adaptivity {
+    /// Whether to explore a picture that is to reach an error. Explorations see no light paths, and each sample of these is for the whole picture:
+    /// where they are traced, only [`Adaptivity::Always`] does.
+    pub fn explores(self, prepared: &Prepared) -> bool {
+        match self {
+            Self::Auto => prepared.light_paths_per_pixel() == 0.0,
+            Self::Always => true,
+            Self::Never => false,
+        }
+    }
+}
+
 /// How far a picture is to go, for which an exploration is only a part.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Goal {

@@ -130,11 +130,15 @@ impl<'a> Pilot<'a> {
         let copies = f64::from(self.probe.copies());
         let rate = self.seconds / self.probe.paths() as f64;
         let ray = self.seconds / self.probe.rays() as f64;
-        let of_light = self.light.map_or(0.0, |light| ray * LIGHT_RAY * light.rays * f64::from(samples));
-        let paths = match &self.allocation {
-            None => u64::from(samples) * self.rect.area(),
-            Some(allocation) => allocation.paths(samples, self.probe.replicates()),
+        let replicates = self.probe.replicates();
+        let (paths, most) = match &self.allocation {
+            None => (u64::from(samples) * self.rect.area(), samples),
+            Some(allocation) => {
+                (allocation.paths(samples, replicates), allocation.least_and_most(samples, replicates)[1])
+            }
         };
+        // Light paths are traced for the tile that takes the most samples.
+        let of_light = self.light.map_or(0.0, |light| ray * LIGHT_RAY * light.rays * f64::from(most));
         self.points.push(PilotPoint {
             samples,
             relative_rmse: error.relative_rmse().unwrap_or(f64::INFINITY) * copies.sqrt(),

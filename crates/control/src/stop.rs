@@ -247,10 +247,9 @@ fn explored(
     clock: &(dyn Fn() -> f64 + Sync),
     watch: &dyn Watch,
 ) -> Result<Option<Explored>, ThreadError> {
-    match limits.adaptivity {
-        Adaptivity::Never => return Ok(None),
-        Adaptivity::Auto if limits.relative_rmse.is_none() => return Ok(None),
-        Adaptivity::Auto | Adaptivity::Always => {}
+    let has_goal = limits.relative_rmse.is_some() || limits.adaptivity == Adaptivity::Always;
+    if !has_goal || !limits.adaptivity.explores(prepared) {
+        return Ok(None);
     }
     let start = clock();
     let goal = Goal { samples: limits.samples, relative_rmse: limits.relative_rmse };

@@ -110,7 +110,7 @@ impl Quote {
         let whole = PixelRect { x0: 0, y0: 0, x1: film.width, y1: film.height };
         let finest = settings.errors.iter().copied().fold(f64::INFINITY, f64::min);
         let (mut allocation, mut exploration) = (None, None);
-        if settings.adaptivity != Adaptivity::Never {
+        if settings.adaptivity.explores(prepared) {
             let goal = Goal { samples: Limits::ANY_SAMPLES, relative_rmse: Some(finest) };
             let start = clock();
             let enough = || stopped() || clock() - start > EXPLORING * settings.pilot_seconds;

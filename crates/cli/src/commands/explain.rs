@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::time::Instant;
 
-use etalon_scene::Scene;
+use etalon_scene::{LightTracing, Scene};
 use etalon_transport::plan::{Decision, Effect, LaneModel, Plan};
 use etalon_transport::{Control, EffectName, Extent, PathLoop, Prepared, Study, prepare_study};
 use miette::Report;
@@ -127,10 +127,12 @@ fn describe(prepared: &Prepared, costs: &[Cost]) -> String {
     }
     let per_pixel = prepared.light_paths_per_pixel();
     if per_pixel > 0.0 {
-        let what = format!(
-            "{per_pixel} a pixel and sample bring what mirrors and glass throw on the scene: a trial found less noise"
-        );
-        lines.push(format!("{:<20} {what}", "light paths"));
+        let why = match prepared.scene().integrator.light_tracing {
+            LightTracing::Always => "as the scene asks",
+            LightTracing::Auto | LightTracing::Never => "a trial found less noise",
+        };
+        let what = format!("{per_pixel} a pixel and sample bring what mirrors and glass throw on the scene");
+        lines.push(format!("{:<20} {what}: {why}", "light paths"));
     }
     if let (share, images @ 1..) = prepared.specular_light_images() {
         let share = format!("up to {:.0} % of the directions at diffuse surfaces aim at", 100.0 * share);

@@ -35,7 +35,8 @@ pub struct ShapeSample {
     pub density: f64,
     /// Whether the outward side is seen.
     pub front: bool,
-    /// False where there is no direction, or none with a finite density, as edge-on. The rest then means nothing.
+    /// False where there is no direction, or none with a finite density, as edge-on. The rest then means nothing, but for the point of a shape
+    /// whose points are uniform.
     pub valid: bool,
 }
 

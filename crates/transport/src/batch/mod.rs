@@ -21,8 +21,7 @@ mod stream;
 #[cfg(test)]
 mod tests;
 
-use crate::film::Splats;
-use crate::film::{Counters, Sums};
+use crate::film::{Counters, Splats, Sums};
 use crate::integrator::film_entry::{FilmEntry, Received};
 use crate::integrator::reuse::Blocks;
 use crate::integrator::tracer::{PixelSamples, Tracer};

@@ -44,9 +44,14 @@ impl Splats {
         self.starts.windows(2).map(|bounds| &self.entries[bounds[0]..bounds[1]])
     }
 
-    /// The same one by one: column, row, CIE XYZ.
-    pub(crate) fn all(&self) -> impl Iterator<Item = (u32, u32, [f64; 3])> + '_ {
-        let pixels = self.rect.pixels().zip(self.by_pixel());
-        pixels.flat_map(|((x, y), of_pixel)| of_pixel.iter().map(move |&(_, xyz)| (x, y, xyz)))
+    /// The mean over `samples` samples of what each pixel receives, and its variance from one sample to another, row by row.
+    pub(crate) fn moments(&self, samples: u32, of: impl Fn([f64; 3]) -> f64) -> impl Iterator<Item = (f64, f64)> {
+        let samples = f64::from(samples);
+        self.by_pixel().map(move |of_pixel| {
+            // Samples that bring nothing are among them.
+            let sum: f64 = of_pixel.iter().map(|(_, xyz)| of(*xyz)).sum();
+            let squares: f64 = of_pixel.iter().map(|(_, xyz)| of(*xyz) * of(*xyz)).sum();
+            (sum / samples, ((squares - sum * sum / samples) / (samples - 1.0)).max(0.0))
+        })
     }
 }

@@ -1,16 +1,16 @@
 //! Objects that light paths begin at: see [`light_tracing`](crate::integrator::light_tracing).
 
-use crate::bsdf::Bsdf;
+use crate::bsdf::{Bsdf, Properties};
 use crate::surface::shading_geometry::Coordinates;
 use crate::surface::{ObjectSurface, Surfaces};
 use etalon_geometry::{Geometry, PrimitiveId};
 use etalon_optics::Vec3;
 
-/// The objects that throw light, and how it is followed.
+/// Smooth mirrors, metals, glass and panes that throw light on a scene, and how it is followed.
 #[derive(Clone, Debug)]
 pub(crate) struct SpecularObjects {
-    /// Of each object.
-    pub(crate) casts: Vec<bool>,
+    /// Of each object of the scene.
+    pub(crate) is_one: Vec<bool>,
     /// Their shapes, and the area of each with all before it.
     primitives: Vec<PrimitiveId>,
     area_until: Vec<f64>,
@@ -23,35 +23,35 @@ pub(crate) struct SpecularObjects {
 impl SpecularObjects {
     /// Those of a scene.
     pub(crate) fn new(surfaces: &Surfaces, geometry: &Geometry) -> Option<Self> {
-        let mut casts = vec![false; surfaces.objects.len()];
+        let mut is_one = vec![false; surfaces.objects.len()];
         let (mut primitives, mut area_until, mut area) = (Vec::new(), Vec::new(), 0.0);
         // The scene's own: where instances place others, their areas are not known.
         for (number, &object) in surfaces.object_of.first().into_iter().flatten().enumerate() {
             let Some(of_object) = surfaces.objects.get(object as usize) else { continue };
             let primitive = PrimitiveId(number as u32);
-            if let (true, Some(shape)) = (may_cast(surfaces, of_object), geometry.primitive(primitive).sampler()) {
-                casts[object as usize] = true;
+            if let (true, Some(shape)) = (is_reciprocal(surfaces, of_object), geometry.primitive(primitive).sampler()) {
+                is_one[object as usize] = true;
                 area += shape.area();
                 primitives.push(primitive);
                 area_until.push(area);
             }
         }
-        let finds_sources = surfaces.others(&casts).all(|of| !of.has_delta());
-        (area > 0.0).then(|| Self { casts, primitives, area_until, finds_sources, paths_per_pixel: 1.0 })
+        let finds_sources = surfaces.other_properties(&is_one).all(|of| !of.has_delta());
+        (area > 0.0).then(|| Self { is_one, primitives, area_until, finds_sources, paths_per_pixel: 1.0 })
     }
 
-    /// Whether an object throws light.
+    /// Whether an object is one of them.
     #[inline(always)]
-    pub(crate) fn casts(&self, object: u32) -> bool {
-        self.casts[object as usize]
+    pub(crate) fn contains(&self, object: u32) -> bool {
+        self.is_one[object as usize]
     }
 
-    /// The area of all casters.
+    /// The area of all specular objects.
     pub(crate) fn area(&self) -> f64 {
         self.area_until.last().copied().unwrap_or(0.0)
     }
 
-    /// A point of the casters for numbers in [0, 1); all are equally likely.
+    /// A point of the specular objects for numbers in [0, 1); all are equally likely.
     pub(crate) fn point(&self, geometry: &Geometry, u: f64, on_shape: [f64; 2]) -> Option<(PrimitiveId, Vec3<f64>)> {
         let at = u * self.area();
         let index = self.area_until.partition_point(|&until| until <= at).min(self.primitives.len() - 1);
@@ -61,7 +61,7 @@ impl SpecularObjects {
 }
 
 /// Whether a walk along the light may go through an object as a walk against it does.
-fn may_cast(surfaces: &Surfaces, object: &ObjectSurface) -> bool {
+fn is_reciprocal(surfaces: &Surfaces, object: &ObjectSurface) -> bool {
     let smooth = matches!(
         surfaces.bsdfs[object.material].untinted(),
         Bsdf::Mirror(_) | Bsdf::Conductor(_) | Bsdf::Dielectric(_) | Bsdf::ThinDielectric(_)
@@ -71,12 +71,12 @@ fn may_cast(surfaces: &Surfaces, object: &ObjectSurface) -> bool {
 }
 
 impl Surfaces {
-    /// The properties of objects that are no casters.
-    pub(crate) fn others<'a>(&'a self, casts: &'a [bool]) -> impl Iterator<Item = &'a crate::bsdf::Properties> {
+    /// The properties of the objects that are none of some.
+    pub(crate) fn other_properties<'a>(&'a self, is_one: &'a [bool]) -> impl Iterator<Item = &'a Properties> {
         self.objects
             .iter()
-            .zip(casts)
-            .filter(|(_, casts)| !**casts)
+            .zip(is_one)
+            .filter(|(_, is_one)| !**is_one)
             .map(|(object, _)| &self.properties[object.material])
     }
 }

@@ -92,9 +92,9 @@ pub(super) enum Step {
 /// Which of the light that a path finds is left to light paths: see [`light_tracing`](super::light_tracing).
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum LightTraced {
-    /// That which comes by way of casters to a vertex that scatters.
+    /// That which comes by way of specular objects to a vertex that scatters.
     AfterSpecular,
-    /// That which it meets next as well, since it came by way of casters from such a vertex.
+    /// That which it meets next as well, since it came by way of specular objects from such a vertex.
     Now,
     /// None: the camera sees a mirror or glass first, or something was in the way that light paths do not go through.
     Never,
@@ -327,13 +327,13 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
     /// Whether light paths bring the light of a lamp, or of a sky that shadow rays aim at, which it has met.
     #[inline(always)]
     pub(super) fn is_light_traced(&self, world: &World<'a>) -> bool {
-        world.casters.is_some() && self.light_traced == LightTraced::Now
+        world.specular_objects.is_some() && self.light_traced == LightTraced::Now
     }
 
-    /// Whether light paths bring what comes by way of casters to the vertex at which it is, where that scatters.
+    /// Whether light paths bring what comes by way of specular objects to the vertex at which it is, where that scatters.
     #[inline(always)]
     pub(super) fn is_light_traced_after_specular(&self, world: &World<'a>) -> bool {
-        world.casters.is_some() && self.light_traced != LightTraced::Never
+        world.specular_objects.is_some() && self.light_traced != LightTraced::Never
     }
 
     /// Whether its last step was from a vertex that scatters into every direction.

@@ -171,11 +171,11 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         self.polarisation.follow(*wo, wi, || vertex.scattering().mueller(&self.wavelengths.lambda_nm, *wo, wi, lobe));
         let mean_of_hero = self.lanes.follow(sample.lane_density);
         self.eta_squared *= sample.eta * sample.eta;
-        if let Some(casters) = world.casters {
+        if let Some(specular_objects) = world.specular_objects {
             self.light_traced = match self.light_traced {
                 LightTraced::Never => LightTraced::Never,
                 _ if !delta => LightTraced::AfterSpecular,
-                _ if self.vertex > 0 && casters.casts(vertex.surface.object) => LightTraced::Now,
+                _ if self.vertex > 0 && specular_objects.contains(vertex.surface.object) => LightTraced::Now,
                 _ => LightTraced::Never,
             };
         }

@@ -1,7 +1,6 @@
 //! Camera paths: where the samples of pixels begin.
 
 use crate::camera::{Camera, CameraRay};
-use crate::film::filter::FilterSampler;
 use crate::film::{Counters, PixelRect};
 use crate::integrator::observer::{End, Observer};
 use crate::integrator::wavelength_lanes::WavelengthModel;
@@ -105,15 +104,10 @@ impl<'a> Tracer<'a> {
                 plain_skies: prepared.environments.iter().all(|sky| sky.light.is_none()),
                 refracting_bodies: prepared.refracting_bodies.as_ref().filter(|_| prepared.refracts_shadow_rays()),
                 specular_connections: prepared.specular_connections.as_ref(),
-                casters: prepared.casters.as_ref(),
+                specular_objects: prepared.specular_objects.as_ref(),
                 guided_targets: &prepared.guided_targets,
             },
         }
-    }
-
-    /// The largest distance of a pixel's centre from light that counts in it, along one axis, pixels.
-    pub(crate) fn filter_reach_px(&self) -> f64 {
-        FilterSampler::reach_px(&self.prepared.scene.film.filter)
     }
 
     pub(crate) fn sampler(&self, x: u32, y: u32, sample: u32) -> Sampler {

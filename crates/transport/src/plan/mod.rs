@@ -419,6 +419,11 @@ impl Plan {
         self.effects.iter().any(|effect| effect.name == name && effect.on)
     }
 
+    /// Whether a study leaves out an effect that the scene calls for.
+    pub(crate) fn leaves_out(&self, name: EffectName) -> bool {
+        self.effects.iter().any(|effect| effect.name == name && effect.study == Some(Decision::LeftOut))
+    }
+
     /// Whether an effect will be simulated that nothing calls for.
     pub(crate) fn forces(&self, name: EffectName) -> bool {
         self.effects.iter().any(|effect| effect.name == name && effect.study == Some(Decision::Forced))

@@ -1,7 +1,7 @@
 //! The kernels: the integrator instantiated for a model of wavelengths and of polarisation, and the table that names them.
 
 use crate::batch::render_batch;
-use crate::film::{Counters, Sums};
+use crate::film::{Counters, PixelRect, Sums};
 use crate::guiding::{NO_TARGETS, SpecularObjects};
 use crate::integrator::connection_trial::{ConnectionTrial, try_connections};
 use crate::integrator::film_entry::{FilmEntry, SampleId};
@@ -23,9 +23,17 @@ use std::ops::Range;
 /// to it the rays that each pixel took.
 pub(crate) type RenderPixels = fn(&Prepared, &[PixelSamples], Sums<'_>, &mut [u64]) -> Counters;
 
-/// Follows the light paths of some numbers, of so many, of one sample, with random numbers of a seed. What each brings is given to the last.
-pub(crate) type TraceLightPaths =
-    fn(&Prepared, &SpecularObjects, u64, (Range<u64>, u64), u32, &mut Counters, &mut dyn FnMut(Connection));
+/// Follows the light paths of some numbers, of so many, of one sample, with random numbers of a seed. What each brings to the pixels of a rectangle
+/// is given to the last.
+pub(crate) type TraceLightPaths = fn(
+    &Prepared,
+    &SpecularObjects,
+    u64,
+    (Range<u64>, u64),
+    (u32, PixelRect),
+    &mut Counters,
+    &mut dyn FnMut(Connection),
+);
 
 /// The path loop for one model of wavelengths.
 pub(crate) struct Kernel {
@@ -91,10 +99,10 @@ impl Prepared {
 
 fn trace_light_paths<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
     prepared: &Prepared,
-    casters: &SpecularObjects,
+    specular_objects: &SpecularObjects,
     seed: u64,
     (numbers, of): (Range<u64>, u64),
-    sample: u32,
+    of_sample: (u32, PixelRect),
     counters: &mut Counters,
     put: &mut dyn FnMut(Connection),
 ) {
@@ -103,7 +111,7 @@ fn trace_light_paths<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
     // A direction toward what throws light is of no use to light itself.
     tracer.world.guided_targets = &NO_TARGETS;
     for number in numbers {
-        trace_light_path::<M, P, N>(&tracer, casters, (number, of), sample, counters, put);
+        trace_light_path::<M, P, N>(&tracer, specular_objects, (number, of), of_sample, counters, put);
     }
 }
 

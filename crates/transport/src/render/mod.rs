@@ -4,8 +4,7 @@ pub mod features;
 pub(crate) mod kernel;
 pub mod tune;
 
-use crate::film::Splats;
-use crate::film::{Counters, Film, PixelRect, Sums, TileSums, XyzSum};
+use crate::film::{Counters, Film, PixelRect, Splats, Sums, TileSums, XyzSum};
 use crate::integrator::replay::Replay;
 use crate::integrator::tracer::PixelSamples;
 use crate::plan::{LaneModel, PathLoop};
@@ -36,6 +35,13 @@ pub enum Control {
     Continue,
     /// Begin no further tile.
     Stop,
+}
+
+/// A tile whose samples are rendered in rounds.
+struct UnderWay {
+    sums: TileSums,
+    counters: Counters,
+    finished: bool,
 }
 
 /// No thread pool could be had.
@@ -100,7 +106,7 @@ impl Prepared {
     }
 
     fn light_paths_xyz(&self, x: u32, y: u32, sample: u32) -> Option<[f64; 3]> {
-        self.casters.as_ref()?;
+        self.specular_objects.as_ref()?;
         let rect = PixelRect { x0: x, y0: y, x1: x + 1, y1: y + 1 };
         let splats = self.splats(sample..sample.saturating_add(1), rect);
         Some(splats.of(x, y, sample).unwrap_or([0.0; 3]))
@@ -167,36 +173,37 @@ impl Prepared {
     ) -> Result<(), ThreadError> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build()?;
         let stopped = AtomicBool::new(false);
-        let mut under_way: Vec<_> =
-            tiles.iter().map(|(tile, _)| Some((film.tile(*tile), Counters::default()))).collect();
-        let samples =
-            tiles.iter().fold(u32::MAX..0, |all, (_, samples)| all.start.min(samples.start)..all.end.max(samples.end));
+        let begin = |(tile, samples): &(PixelRect, Range<u32>)| UnderWay {
+            sums: film.tile(*tile),
+            counters: Counters::default(),
+            finished: samples.is_empty(),
+        };
+        let mut under_way: Vec<UnderWay> = tiles.iter().map(begin).collect();
+        let ranges = tiles.iter().map(|(_, samples)| samples).filter(|samples| !samples.is_empty());
+        let all = ranges.fold(u32::MAX..0, |all, own| all.start.min(own.start)..all.end.max(own.end));
         let whole = self.whole_rect();
-        for round in self.light_rounds(samples) {
+        for round in self.light_rounds(all) {
+            if stopped.load(Ordering::Relaxed) {
+                break;
+            }
             let splats = pool.install(|| self.splats(round.clone(), whole));
-            let advance =
-                |((tile, samples), under_way): (&(PixelRect, Range<u32>), &mut Option<(TileSums, Counters)>)| {
-                    let Some((sums, counters)) = under_way else { return };
-                    if stopped.load(Ordering::Relaxed) {
-                        *under_way = None;
-                        return;
-                    }
-                    let own = samples.start.max(round.start)..samples.end.min(round.end);
-                    if own.is_empty() && !samples.is_empty() {
-                        return;
-                    }
-                    counters.merge(&self.render_tile(*tile, own, &splats, sums));
-                    if samples.end <= round.end && on_tile(counters) == Control::Stop {
-                        stopped.store(true, Ordering::Relaxed);
-                    }
-                };
+            let advance = |((tile, samples), under_way): (&(PixelRect, Range<u32>), &mut UnderWay)| {
+                let own = samples.start.max(round.start)..samples.end.min(round.end);
+                if under_way.finished || own.is_empty() || stopped.load(Ordering::Relaxed) {
+                    return;
+                }
+                let counters = self.render_tile(*tile, own, &splats, &mut under_way.sums);
+                under_way.counters.merge(&counters);
+                under_way.finished = samples.end <= round.end;
+                if under_way.finished && on_tile(&under_way.counters) == Control::Stop {
+                    stopped.store(true, Ordering::Relaxed);
+                }
+            };
             pool.install(|| tiles.par_iter().zip(&mut under_way).for_each(advance));
         }
-        for ((tile, _), done) in tiles.iter().zip(under_way) {
-            if let Some((sums, counters)) = done {
-                film.put(*tile, &sums);
-                film.counters.merge(&counters);
-            }
+        for ((tile, _), done) in tiles.iter().zip(under_way).filter(|(_, under_way)| under_way.finished) {
+            film.put(*tile, &done.sums);
+            film.counters.merge(&done.counters);
         }
         Ok(())
     }

@@ -2,7 +2,7 @@
 
 use crate::guiding::SpecularObjects;
 use crate::guiding::{GuidedBy, USUAL_SHARES};
-use crate::integrator::light_tracing::objects_that_throw_light;
+use crate::integrator::light_tracing::find_specular_objects;
 use crate::integrator::light_tracing::trial::light_paths_per_pixel;
 use crate::integrator::trial::{SHARES, TRIED};
 use crate::plan::{EffectName, LaneModel, Study};
@@ -61,7 +61,7 @@ pub fn prepare_frame(scene: &Scene, study: &Study, earlier: Option<Prepared>) ->
         // The same for each seed of a scene, so that pictures of different ones are drawn alike; and none that anyone would choose.
         prepared.tune(mix(0x6361_7573_7469_6373));
     } else if prepared.scene.integrator.light_tracing == LightTracing::Always {
-        prepared.casters = prepared.wanted_light_tracing();
+        prepared.specular_objects = prepared.wanted_light_tracing();
     }
     let warnings = coincidence::warnings(&prepared);
     prepared.warnings.extend(warnings);
@@ -74,7 +74,7 @@ impl Prepared {
     pub fn tune(&mut self, seed: u64) {
         // An earlier frame may have found otherwise, and each trial depends on what those before it have found.
         self.wavelength_guide = None;
-        self.casters = None;
+        self.specular_objects = None;
         self.tune_camera_paths(seed);
         self.tune_light_tracing(seed);
         self.tune_wavelengths(seed);
@@ -91,28 +91,28 @@ impl Prepared {
     /// Follows light from the lamps where that leaves less noise for the time than the best that camera paths do alone. What these are
     /// guided by is then decided anew: it is no longer for them to find what light paths bring.
     fn tune_light_tracing(&mut self, seed: u64) {
-        let Some(mut casters) = self.wanted_light_tracing() else { return };
+        let Some(mut specular_objects) = self.wanted_light_tracing() else { return };
         let try_camera_paths = |prepared: &Self| (prepared.kernel().try_camera_paths)(prepared, seed);
         let whole = try_camera_paths(self);
-        self.casters = Some(casters.clone());
+        self.specular_objects = Some(specular_objects.clone());
         let rest = try_camera_paths(self);
-        let found = light_paths_per_pixel(self, &casters, seed, [&whole, &rest]);
+        let found = light_paths_per_pixel(self, &specular_objects, seed, [&whole, &rest]);
         let always = self.scene.integrator.light_tracing == LightTracing::Always;
-        casters.paths_per_pixel = found.map_or(1.0, |found| found.per_pixel);
-        self.casters = (always || found.is_some_and(|found| found.is_worth_it)).then_some(casters);
-        if self.casters.is_some() {
+        specular_objects.paths_per_pixel = found.map_or(1.0, |found| found.per_pixel);
+        self.specular_objects = (always || found.is_some_and(|found| found.is_worth_it)).then_some(specular_objects);
+        if self.specular_objects.is_some() {
             self.tune_camera_paths(seed);
         }
     }
 
-    /// The casters of a scene in which light paths are wanted and possible. Warns where they are asked for and not possible.
+    /// The specular objects of a scene in which light paths are wanted and possible. Warns where they are asked for and not possible.
     fn wanted_light_tracing(&mut self) -> Option<SpecularObjects> {
         let wanted = self.scene.integrator.light_tracing;
         if wanted == LightTracing::Never {
             return None;
         }
-        match objects_that_throw_light(self) {
-            Ok(casters) => Some(casters),
+        match find_specular_objects(self) {
+            Ok(specular_objects) => Some(specular_objects),
             Err(reason) if wanted == LightTracing::Always => {
                 self.warnings.push(format!("no light paths are traced, although the scene asks for them: {reason}"));
                 None

@@ -58,7 +58,7 @@ pub struct Prepared {
     pub(crate) specular_connections: Option<SpecularConnections>,
     pub(crate) refracting_bodies: Option<RefractingBodies>,
     /// Set by the trial before a picture.
-    pub(crate) casters: Option<SpecularObjects>,
+    pub(crate) specular_objects: Option<SpecularObjects>,
     /// Whether a trial found no use in what goes through them.
     pub(crate) shadow_rays_stop_at_glass: bool,
     plan: Plan,
@@ -242,7 +242,7 @@ pub(crate) fn build(scene: &Scene, study: &Study, earlier: Option<Prepared>) -> 
         guided_targets,
         specular_connections: specular_connections.flatten(),
         refracting_bodies: refracting_bodies.flatten(),
-        casters: None,
+        specular_objects: None,
         shadow_rays_stop_at_glass: false,
         plan,
         shape_warnings: warnings.len(),

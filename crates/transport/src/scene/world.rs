@@ -45,7 +45,7 @@ pub(crate) struct World<'a> {
     /// The glass that shadow rays go through, if they do.
     pub refracting_bodies: Option<&'a RefractingBodies>,
     /// The objects whose light is followed from the lamps, if it is.
-    pub casters: Option<&'a SpecularObjects>,
+    pub specular_objects: Option<&'a SpecularObjects>,
     /// What diffuse surfaces draw directions toward.
     pub guided_targets: &'a GuidedTargets,
 }

@@ -6,7 +6,7 @@ use std::time::Instant;
 use etalon::KeptBands;
 use etalon_picture::develop::{BandMean, Rect, spectrum_of};
 use etalon_scene::{Bands, Scene};
-use etalon_transport::{Film, PixelRect, Prepared, Study, TileSums, prepare_frame};
+use etalon_transport::{Film, PixelRect, Prepared, Splats, Study, TileSums, prepare_frame};
 use serde::Serialize;
 
 use crate::live::status::Phase;
@@ -146,8 +146,8 @@ impl Kept {
         while under_way.samples < goal && (under_way.samples == 0 || start.elapsed().as_secs_f64() < most_s) {
             let next = (2 * under_way.samples).max(64).next_multiple_of(replicates).min(goal);
             let numbers = under_way.samples..next;
-            let splats = prepared.splats(numbers.clone(), rect_of(at));
-            prepared.render_tile(rect_of(at), numbers, &splats, &mut under_way.sums);
+            // Where bands are kept no light paths are traced.
+            prepared.render_tile(rect_of(at), numbers, &Splats::NONE, &mut under_way.sums);
             under_way.samples = next;
         }
         under_way.seconds += start.elapsed().as_secs_f64();

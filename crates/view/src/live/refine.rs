@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use etalon::Subject;
 use etalon_control::adaptive::{Goal, WORTHWHILE, explore};
-use etalon_control::{Canvas, Limits, Pilot, SampleAllocation, Shard};
+use etalon_control::{Adaptivity, Canvas, Limits, Pilot, SampleAllocation, Shard};
 use etalon_transport::{Control, PixelRect, ThreadError};
 
 use super::painter::{Halt, Paint};
@@ -153,6 +153,9 @@ impl Paint<'_> {
 
     /// Learns where samples are worth most; `None` where that gains little.
     fn explore(&self, rect: PixelRect) -> Result<Option<Arc<SampleAllocation>>, Halt> {
+        if !Adaptivity::Auto.explores(self.prepared) {
+            return Ok(None);
+        }
         self.phase(Phase::Pilot);
         let target = self.live().wish().target.unwrap_or(self.painter.error);
         let goal = Goal { samples: Limits::ANY_SAMPLES, relative_rmse: Some(target) };

@@ -1,7 +1,7 @@
-//! One path from a lamp, by way of casters, to the surfaces that it lights; each of them is connected to the camera.
+//! One path from a lamp, by way of specular objects, to the surfaces that it lights; each of them is connected to the camera.
 
 use crate::bsdf::lambert;
-use crate::film::Counters;
+use crate::film::{Counters, PixelRect};
 use crate::guiding::SpecularObjects;
 use crate::integrator::tracer::Tracer;
 use crate::integrator::wavelength_lanes::WavelengthModel;
@@ -26,19 +26,19 @@ pub(crate) struct Connection {
     pub xyz: [f64; 3],
 }
 
-/// Where a light path begins: on a caster, lit by a lamp.
+/// Where a light path begins: on a specular object, lit by a lamp.
 struct Beginning<'a, const N: usize> {
     vertex: SurfaceInteraction<'a>,
     /// The power that it stands for at each wavelength, if it is the only one of its sample.
     power: Lanes<f64, N>,
 }
 
-/// Follows light path number `number` of the `of` of a sample. What it brings is given to `put`.
+/// Follows light path number `number` of the `of` of a sample. What it brings to the pixels of a rectangle is given to `put`.
 pub(crate) fn trace_light_path<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
     tracer: &Tracer<'a>,
-    casters: &SpecularObjects,
+    specular_objects: &SpecularObjects,
     (number, of): (u64, u64),
-    sample: u32,
+    (sample, rect): (u32, PixelRect),
     counters: &mut Counters,
     put: &mut dyn FnMut(Connection),
 ) {
@@ -50,16 +50,19 @@ pub(crate) fn trace_light_path<'a, M: WavelengthModel<N>, P: Polarisation<N>, co
     let (ray, right) = (Ray::free(Vec3::ZERO, Vec3::new(0.0, 0.0, 1.0)), Vec3::new(1.0, 0.0, 0.0));
     let polarisation = P::at_camera(ray.direction, right);
     path.begin(world, &Start { ray, stack: None, wavelengths, polarisation, weight: 1.0, hero_only: false });
-    let Some(Beginning { mut vertex, power }) = begin(tracer, casters, &mut path, (number, of), &sampler, counters)
+    let Some(Beginning { mut vertex, power }) =
+        begin(tracer, specular_objects, &mut path, (number, of), &sampler, counters)
     else {
         return;
     };
     let mut lights = false;
     loop {
-        let is_caster = casters.casts(vertex.surface.object);
+        let is_specular = specular_objects.contains(vertex.surface.object);
         // Straight from the lamp, shadow rays of camera paths find it.
-        lights |= !is_caster;
-        if lights && let Some(connection) = connect(tracer, &mut path, &vertex, power / of as f64, &sampler, counters) {
+        lights |= !is_specular;
+        if lights
+            && let Some(connection) = connect(tracer, &mut path, &vertex, (power / of as f64, rect), &sampler, counters)
+        {
             put(connection);
         }
         // Camera, next vertex, those before it, lamp.
@@ -68,7 +71,7 @@ pub(crate) fn trace_light_path<'a, M: WavelengthModel<N>, P: Polarisation<N>, co
         }
         let [u_lobe, u1, u2, u_roulette] = sampler.vertex_set(path.vertex, 0);
         let Some(direction) = path.sample_direction(world, &vertex, [u_lobe, u1, u2], &mut ()) else { return };
-        let Some(wi) = step(tracer, &mut path, &vertex, direction, (is_caster, u_lobe)) else { return };
+        let Some(wi) = step(tracer, &mut path, &vertex, direction, (is_specular, u_lobe)) else { return };
         if !path.survives(world, 1.0, u_roulette, &mut ()) {
             return;
         }
@@ -80,10 +83,10 @@ pub(crate) fn trace_light_path<'a, M: WavelengthModel<N>, P: Polarisation<N>, co
     }
 }
 
-/// Draws a point of the casters, and a lamp that lights it.
+/// Draws a point of the specular objects, and a lamp that lights it.
 fn begin<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
     tracer: &Tracer<'a>,
-    casters: &SpecularObjects,
+    specular_objects: &SpecularObjects,
     path: &mut Path<'a, M, P, N>,
     (number, of): (u64, u64),
     sampler: &Sampler,
@@ -93,7 +96,7 @@ fn begin<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
     let [u1, u2, u_place, u_light] = sampler.set(0);
     // The paths of a sample are spread evenly over the area.
     let u_place = (number as f64 + u_place) / of as f64;
-    let (primitive, position) = casters.point(world.geometry, u_place, [u1, u2])?;
+    let (primitive, position) = specular_objects.point(world.geometry, u_place, [u1, u2])?;
     let surface = SurfaceId { instance: 0, primitive };
     let hit = Hit { t: 0.0, surface, uv: world.geometry.parameters(surface, position, 0.0) };
     let point = world.geometry.surface(&Ray::free(position, Vec3::new(0.0, 0.0, 1.0)), &hit);
@@ -102,7 +105,7 @@ fn begin<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
     let [_, light_1, light_2, _] = sampler.vertex_set(0, 1);
     let draw = world.sample_light(&point, u_light, [light_1, light_2])?;
     let has_source = world.lights.lights()[draw.light as usize].source().is_some();
-    if has_source && !casters.finds_sources {
+    if has_source && !specular_objects.finds_sources {
         return None;
     }
     let LightSample { wi: toward_lamp, density, scale, target, colour, .. } = draw.sample;
@@ -115,7 +118,7 @@ fn begin<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
     let cos = point.normal.dot(toward_lamp).abs();
     let colour = colour.or_else(|| world.colour_of_emitter(draw.light, target, point.time));
     let white = path.spectrum_of_light(world, draw.light);
-    let power = path.coloured(white, colour) * (scale * cos * casters.area() / (density * draw.probability));
+    let power = path.coloured(white, colour) * (scale * cos * specular_objects.area() / (density * draw.probability));
     vertex.prepare_scattering(world);
     Some(Beginning { vertex, power })
 }
@@ -126,7 +129,7 @@ fn step<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
     path: &mut Path<'a, M, P, N>,
     vertex: &SurfaceInteraction<'a>,
     direction: Direction<N>,
-    (is_caster, u_lobe): (bool, f64),
+    (is_specular, u_lobe): (bool, f64),
 ) -> Option<Vec3<f64>> {
     let world = &tracer.world;
     let density = match &direction {
@@ -136,7 +139,7 @@ fn step<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
     };
     // Backward and forward, smooth surfaces do the same, but for η², which the path keeps apart.
     let Density::SolidAngle(density) = density else {
-        return is_caster.then(|| path.scatter(world, vertex, direction, u_lobe).wi);
+        return is_specular.then(|| path.scatter(world, vertex, direction, u_lobe).wi);
     };
     // What light from behind becomes toward the next vertex: the camera's own formula, of power instead of radiance.
     let power = path.beta * path.eta_squared;
@@ -155,7 +158,7 @@ fn connect<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
     tracer: &Tracer<'a>,
     path: &mut Path<'a, M, P, N>,
     vertex: &SurfaceInteraction<'a>,
-    power: Lanes<f64, N>,
+    (power, rect): (Lanes<f64, N>, PixelRect),
     sampler: &Sampler,
     counters: &mut Counters,
 ) -> Option<Connection> {
@@ -168,8 +171,11 @@ fn connect<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
     let film = &tracer.prepared.scene.film;
     let (width, height) = (f64::from(film.width), f64::from(film.height));
     let place_px = [0.5 * (seen.film[0] + 1.0) * width, 0.5 * (1.0 - seen.film[1]) * height];
-    let reach = tracer.filter_reach_px();
-    if !(-reach..width + reach).contains(&place_px[0]) || !(-reach..height + reach).contains(&place_px[1]) {
+    let reach = tracer.prepared.filter_reach_px();
+    let reaches = |place: f64, first: u32, end: u32| {
+        (f64::from(first) + 0.5 - reach..=f64::from(end) - 0.5 + reach).contains(&place)
+    };
+    if !reaches(place_px[0], rect.x0, rect.x1) || !reaches(place_px[1], rect.y0, rect.y1) {
         return None;
     }
     let (f_cos, _) = path.eval(world, &vertex.seen_from(seen.toward), vertex.wo);

@@ -4,22 +4,22 @@
 //! rare. A path that begins at the lamp finds the lit place at once, and a connection to the camera says which pixel shows it (Arvo 1986,
 //! *Backward Ray Tracing*; Dutré, Lafortune & Willems 1993).
 //!
-//! **Which light.** Exactly the paths of the form camera – scattering surface – … – casters – lamp. The casters are mirrors or smooth interfaces of
-//! certain objects, one or more next to the lamp. Between the first surface and those the path may scatter, and be reflected or refracted by casters.
+//! **Which light.** Exactly the paths of the form camera – scattering surface – … – specular objects – lamp. The specular objects are mirrors or smooth interfaces of
+//! certain objects, one or more next to the lamp. Between the first surface and those the path may scatter, and be reflected or refracted by specular objects.
 //! All else is left to camera paths, which drop what they find of this form ([`LightTraced`](super::path::LightTraced)). So the two need no weights
 //! against each other.
 //!
-//! **One light path** ([`trace_light_path`]). It begins at the caster that is next to the lamp. Its first point is uniform on the area of all
-//! casters, and a shadow ray looks for a lamp from there, as from any vertex. So every kind of lamp works. Then the path goes on, away from the
-//! lamp. From the first surface on that is no caster, each vertex is connected to a point on the lens.
+//! **One light path** ([`trace_light_path`]). It begins at the specular object that is next to the lamp. Its first point is uniform on the area of all
+//! specular objects, and a shadow ray looks for a lamp from there, as from any vertex. So every kind of lamp works. Then the path goes on, away from the
+//! lamp. From the first surface on that is no specular object, each vertex is connected to a point on the lens.
 //!
-//! **The film.** A sample of the picture has as many light paths as it has pixels, or a fixed multiple of that. What they bring to a pixel is added
+//! **The film.** A sample of the picture has a fixed number of light paths, from an eighth to eight for each pixel. What they bring to a pixel is added
 //! to the camera path of the same number ([`Splats`](crate::film::Splats)). So a sample stays a function of the scene, its seed and its number, and replicates stay
 //! independent. Each part of a picture traces the light paths of its samples anew, whatever its tiles.
 //!
 //! **Reciprocity.** Where a surface scatters, both directions are known, and the camera's own formula is used: shading normals need no correction.
 //! Smooth surfaces reflect and transmit forward with the same probabilities as backward. But transmission scales radiance by n², and a walk along the
-//! light carries power, which it does not scale (Veach 1997, §5.2): the factors η² of the walk are taken back. No mesh with normals is a caster, and
+//! light carries power, which it does not scale (Veach 1997, §5.2): the factors η² of the walk are taken back. No mesh with normals is one, and
 //! light paths end where such a mesh mirrors or refracts.
 
 mod light_path;
@@ -38,7 +38,8 @@ use crate::sampler::mix;
 use crate::scene::prepare::Prepared;
 use std::ops::Range;
 
-/// Light paths that are traced before any of them reaches the film, about: a second, and some hundred megabytes.
+/// Light paths that are traced before any of them reaches the film, about: a second, and some hundred megabytes. A round has one sample at least,
+/// which is more where a picture has more pixels than that.
 const PATHS_OF_ROUND: u64 = 1 << 20;
 /// Samples of a round, of pictures that take few light paths.
 const MOST_SAMPLES_OF_ROUND: u64 = 1 << 12;
@@ -61,7 +62,7 @@ pub struct LightPathsNoise {
 pub const LIGHT_RAY: f64 = 2.0;
 
 /// Those of a scene, or why light paths are not possible in it.
-pub(crate) fn objects_that_throw_light(prepared: &Prepared) -> Result<SpecularObjects, &'static str> {
+pub(crate) fn find_specular_objects(prepared: &Prepared) -> Result<SpecularObjects, &'static str> {
     let plan = prepared.plan();
     // What is forced on a scene that does not need it must change no bit.
     let needs = |effect: EffectName| plan.runs(effect) && !plan.forces(effect);
@@ -82,19 +83,21 @@ pub(crate) fn objects_that_throw_light(prepared: &Prepared) -> Result<SpecularOb
     if let Some((_, reason)) = reasons.into_iter().find(|(is_so, _)| *is_so) {
         return Err(reason);
     }
-    let casters = SpecularObjects::new(&prepared.surfaces, &prepared.geometry)
+    let mut specular_objects = SpecularObjects::new(&prepared.surfaces, &prepared.geometry)
         .ok_or("there is no smooth mirror, metal or glass without shading normals that stands where it is defined")?;
     // What shadow rays through glass find from what the camera sees is found by light paths alone.
-    let all_glass = || prepared.surfaces.others(&casters.casts).all(|of| !of.delta_transmission);
+    let all_glass = || prepared.surfaces.other_properties(&specular_objects.is_one).all(|of| !of.delta_transmission);
+    // A study that leaves out such light of lamps without area finds none of it.
+    specular_objects.finds_sources &= !plan.leaves_out(EffectName::SpecularConnections);
     match prepared.refracting_bodies.is_none() || all_glass() {
-        true => Ok(casters),
-        false => Err("shadow rays go through smooth glass that has shading normals or is an instance"),
+        true => Ok(specular_objects),
+        false => Err("shadow rays go through smooth glass that emits light, is an instance or has shading normals"),
     }
 }
 
 /// Light paths of each sample of a picture.
-fn paths_of_sample(prepared: &Prepared, casters: &SpecularObjects) -> u64 {
-    ((pixels(prepared) as f64 * casters.paths_per_pixel).round() as u64).max(1)
+fn paths_of_sample(prepared: &Prepared, specular_objects: &SpecularObjects) -> u64 {
+    ((pixels(prepared) as f64 * specular_objects.paths_per_pixel).round() as u64).max(1)
 }
 
 fn pixels(prepared: &Prepared) -> u64 {
@@ -105,18 +108,19 @@ fn pixels(prepared: &Prepared) -> u64 {
 impl Prepared {
     /// What light paths bring to the pixels of a rectangle in samples of these numbers; nothing where none are traced.
     pub fn splats(&self, samples: Range<u32>, rect: PixelRect) -> Splats {
-        match &self.casters {
+        match &self.specular_objects {
             None => Splats::NONE,
-            Some(casters) => splats::of_samples(self, casters, samples, rect),
+            Some(specular_objects) => splats::of_samples(self, specular_objects, samples, rect),
         }
     }
 
     /// Samples in parts whose light paths are best traced at once: few enough for memory, and for a render to be stopped soon. All samples where
     /// no light paths are traced.
     pub fn light_rounds(&self, samples: Range<u32>) -> Vec<Range<u32>> {
-        let Some(casters) = &self.casters else { return vec![samples] };
+        let Some(specular_objects) = &self.specular_objects else { return vec![samples] };
         let reached = self.pixels_of_light_path().map_or(1, |[width, height]| u64::from(width * height));
-        let most = (PATHS_OF_ROUND / (reached * paths_of_sample(self, casters))).clamp(1, MOST_SAMPLES_OF_ROUND);
+        let most =
+            (PATHS_OF_ROUND / (reached * paths_of_sample(self, specular_objects))).clamp(1, MOST_SAMPLES_OF_ROUND);
         samples
             .clone()
             .step_by(most as usize)
@@ -126,36 +130,35 @@ impl Prepared {
 
     /// What light paths bring to a rectangle; `None` where none are traced.
     pub fn light_paths_noise(&self, rect: PixelRect) -> Option<LightPathsNoise> {
-        let casters = self.casters.as_ref()?;
+        let specular_objects = self.specular_objects.as_ref()?;
         // No picture is of this seed.
         let seed = mix(self.scene.integrator.seed ^ 0x6c69_6768_7473);
-        let of = paths_of_sample(self, casters);
+        let of = paths_of_sample(self, specular_objects);
         let tried = of.min(PATHS_OF_ROUND / u64::from(SAMPLES_OF_NOISE));
-        let splats = splats::of_paths(self, casters, seed, (tried, 0..SAMPLES_OF_NOISE), rect);
+        let splats = splats::of_paths(self, specular_objects, seed, (tried, 0..SAMPLES_OF_NOISE), rect);
         // What one path brings does not depend on how many there are, but for their number in its weight.
         let of_all = tried as f64 / of as f64;
-        let (samples, pixels) = (f64::from(SAMPLES_OF_NOISE), rect.area() as f64);
-        let (mut y, mut variance) = (0.0, 0.0);
-        for of_pixel in splats.by_pixel() {
-            let sum: f64 = of_pixel.iter().map(|(_, xyz)| xyz[1]).sum();
-            let squares: f64 = of_pixel.iter().map(|(_, xyz)| xyz[1] * xyz[1]).sum();
-            y += sum / samples;
-            // Samples that bring nothing are among them.
-            variance += (squares - sum * sum / samples) / (samples - 1.0);
-        }
+        let moments = splats.moments(SAMPLES_OF_NOISE, |xyz| xyz[1]);
+        let (y, variance) = moments.fold((0.0, 0.0), |sums, own| (sums.0 + own.0, sums.1 + own.1));
+        let pixels = rect.area() as f64;
         let rays = splats.rays as f64 / splats.paths as f64 * of as f64;
         Some(LightPathsNoise { y: y / pixels, variance: variance * of_all / pixels, rays })
+    }
+
+    /// The largest distance of a pixel's centre from light that counts in it, along one axis, pixels.
+    fn filter_reach_px(&self) -> f64 {
+        FilterSampler::reach_px(&self.scene.film.filter)
     }
 
     /// Width and height of a block of pixels that one connection to the camera may reach, if light paths are traced and it may reach several:
     /// their errors have a part in common.
     pub fn pixels_of_light_path(&self) -> Option<[u32; 2]> {
-        let side = (2.0 * FilterSampler::reach_px(&self.scene.film.filter)).ceil() as u32;
-        (self.casters.is_some() && side > 1).then_some([side; 2])
+        let side = (2.0 * self.filter_reach_px()).ceil() as u32;
+        (self.specular_objects.is_some() && side > 1).then_some([side; 2])
     }
 
     /// Light paths of each sample, for each pixel of the picture; 0 where none are traced.
     pub fn light_paths_per_pixel(&self) -> f64 {
-        self.casters.as_ref().map_or(0.0, |casters| casters.paths_per_pixel)
+        self.specular_objects.as_ref().map_or(0.0, |specular_objects| specular_objects.paths_per_pixel)
     }
 }

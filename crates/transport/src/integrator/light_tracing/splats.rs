@@ -22,18 +22,18 @@ struct Splat {
 /// Follows all light paths of some samples. The sums are the same for every number of threads.
 pub(super) fn of_samples(
     prepared: &Prepared,
-    casters: &SpecularObjects,
+    specular_objects: &SpecularObjects,
     samples: Range<u32>,
     rect: PixelRect,
 ) -> Splats {
-    let of = paths_of_sample(prepared, casters);
-    of_paths(prepared, casters, prepared.scene.integrator.seed, (of, samples), rect)
+    let of = paths_of_sample(prepared, specular_objects);
+    of_paths(prepared, specular_objects, prepared.scene.integrator.seed, (of, samples), rect)
 }
 
 /// The same of as many light paths in each sample, with random numbers of a seed.
 pub(super) fn of_paths(
     prepared: &Prepared,
-    casters: &SpecularObjects,
+    specular_objects: &SpecularObjects,
     seed: u64,
     (of, samples): (u64, Range<u32>),
     rect: PixelRect,
@@ -49,9 +49,17 @@ pub(super) fn of_paths(
             .par_iter()
             .map(|(sample, numbers)| {
                 let (mut counters, mut splats) = (Counters::default(), Vec::new());
-                trace(prepared, casters, seed, (numbers.clone(), of), *sample, &mut counters, &mut |connection| {
-                    prepared.spread(&connection, rect, &mut splats);
-                });
+                trace(
+                    prepared,
+                    specular_objects,
+                    seed,
+                    (numbers.clone(), of),
+                    (*sample, rect),
+                    &mut counters,
+                    &mut |connection| {
+                        prepared.spread(&connection, rect, &mut splats);
+                    },
+                );
                 (splats, counters.rays + counters.shadow_rays)
             })
             .collect();
@@ -126,7 +134,7 @@ impl SampleSums {
 impl Prepared {
     /// What each pixel of a rectangle receives of a light path: by the density of its filter.
     fn spread(&self, connection: &Connection, rect: PixelRect, splats: &mut Vec<Splat>) {
-        let reach = crate::film::filter::FilterSampler::reach_px(&self.scene.film.filter);
+        let reach = self.filter_reach_px();
         // The centre of a pixel is half a pixel after its number.
         let near = |place: f64, first: u32, end: u32| {
             let from = (place - 0.5 - reach).ceil().max(f64::from(first));

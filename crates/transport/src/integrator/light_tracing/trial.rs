@@ -82,27 +82,30 @@ pub(crate) struct LightTrial {
 /// What light paths would leave of the noise; `None` if too few of them reach the camera to say.
 pub(crate) fn light_paths_per_pixel(
     prepared: &Prepared,
-    casters: &SpecularObjects,
+    specular_objects: &SpecularObjects,
     seed: u64,
     [whole, rest]: [&CameraTrial; 2],
 ) -> Option<LightTrial> {
     let tried = Tried::of(prepared);
     let rect = prepared.whole_rect();
-    let splats = splats::of_paths(prepared, casters, seed, (PATHS.min(rect.area()), 0..LIGHT_SAMPLES), rect);
+    let splats = splats::of_paths(prepared, specular_objects, seed, (PATHS.min(rect.area()), 0..LIGHT_SAMPLES), rect);
     // With one path for each pixel, as on the picture.
     let of_path = splats.paths as f64 / (f64::from(LIGHT_SAMPLES) * rect.area() as f64);
     let cells = whole.moments.len();
     let pixels_of_cell = rect.area() as f64 / cells as f64;
-    let (mut means, mut squares) = (vec![0.0; cells], vec![0.0; cells]);
-    let (mut sum, mut sum_of_squares) = (0.0, 0.0);
-    for (x, y, xyz) in splats.all() {
-        let (cell, level) = (tried.cell(x, y), level(xyz));
-        (sum, sum_of_squares) = (sum + level, sum_of_squares + level * level);
-        means[cell] += level / (f64::from(LIGHT_SAMPLES) * pixels_of_cell);
-        squares[cell] += level * level * of_path / (f64::from(LIGHT_SAMPLES) * pixels_of_cell);
+    let (mut means, mut variances) = (vec![0.0; cells], vec![0.0; cells]);
+    for ((x, y), (mean, variance)) in rect.pixels().zip(splats.moments(LIGHT_SAMPLES, level)) {
+        let cell = tried.cell(x, y);
+        means[cell] += mean / pixels_of_cell;
+        variances[cell] += variance * of_path / pixels_of_cell;
     }
+    let levels = || splats.by_pixel().flatten().map(|(_, xyz)| level(*xyz));
+    let (sum, sum_of_squares) = (levels().sum::<f64>(), levels().map(|level| level * level).sum::<f64>());
+    // A connection may reach several pixels, and is one all the same.
+    let fewest =
+        FEWEST_CONNECTIONS * prepared.pixels_of_light_path().map_or(1.0, |[width, height]| f64::from(width * height));
     // So many of equal weight would have the same scatter (Kish 1965).
-    if !(sum * sum >= FEWEST_CONNECTIONS * sum_of_squares && sum > 0.0) {
+    if !(sum * sum >= fewest * sum_of_squares && sum > 0.0) {
         return None;
     }
     let all: Vec<f64> = means.iter().zip(&rest.moments).map(|(of_light, (of_rest, _))| of_light + of_rest).collect();
@@ -118,9 +121,9 @@ pub(crate) fn light_paths_per_pixel(
         cost
     };
     let mut of_light = Cost { light: means.iter().sum(), ..Cost::default() };
-    for (square, scale) in squares.iter().zip(&scales) {
+    for (variance, scale) in variances.iter().zip(&scales) {
         if *scale > 0.0 {
-            of_light.variance += square / scale;
+            of_light.variance += variance / scale;
         }
     }
     of_light.rays = LIGHT_RAY * cells as f64 * splats.rays as f64 / splats.paths as f64;

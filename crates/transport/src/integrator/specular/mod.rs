@@ -26,8 +26,7 @@ mod solve;
 use super::Path;
 use super::vertex::Vertex;
 use crate::film::Counters;
-use crate::guiding::SpecularObjects;
-use crate::guiding::{SeedNumbers, SpecularConnections};
+use crate::guiding::{SeedNumbers, SpecularConnections, SpecularObjects};
 use crate::integrator::observer::{Found, Observer};
 use crate::integrator::wavelength_lanes::WavelengthModel;
 use crate::polarisation::Polarisation;
@@ -74,9 +73,9 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         counters: &mut Counters,
         observer: &mut impl Observer<N>,
     ) {
-        let finds_sources = |casters: &SpecularObjects| casters.finds_sources;
+        let finds_sources = |specular_objects: &SpecularObjects| specular_objects.finds_sources;
         if let Some(connections) = world.specular_connections
-            && !(world.casters.is_some_and(finds_sources) && self.is_light_traced_after_specular(world))
+            && !(world.specular_objects.is_some_and(finds_sources) && self.is_light_traced_after_specular(world))
         {
             let first = sampler.connection_set(self.vertex);
             let numbers = Numbers { first, further: sampler.connection_numbers(self.vertex) };
