@@ -160,16 +160,9 @@ impl Canvas {
     ) -> Result<(), ThreadError> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build()?;
         let stopped = AtomicBool::new(false);
-        let missing = self.missing(samples);
-        let all = missing.iter().fold(u32::MAX..0, |all, own| all.start.min(own.start)..all.end.max(own.end));
-        let takes = |own: &Range<u32>, round: &Range<u32>| own.start.max(round.start) < own.end.min(round.end);
-        for round in prepared.light_rounds(all) {
+        for round in prepared.light_rounds(&self.missing(samples)) {
             if stopped.load(Ordering::Relaxed) {
                 break;
-            }
-            // Tiles may have come to different numbers.
-            if !missing.iter().any(|own| takes(own, &round)) {
-                continue;
             }
             let splats = pool.install(|| prepared.splats(round.clone(), self.rect));
             let target = |rect: PixelRect| samples(rect).min(round.end);
@@ -180,8 +173,7 @@ impl Canvas {
 
     /// The samples that tiles lack of what `samples` says for them.
     fn missing(&self, samples: &(dyn Fn(PixelRect) -> u32 + Sync)) -> Vec<Range<u32>> {
-        let of_tiles = self.state().tiles.iter().map(|tile| tile.samples..samples(tile.rect)).collect::<Vec<_>>();
-        of_tiles.into_iter().filter(|own| !own.is_empty()).collect()
+        self.state().tiles.iter().map(|tile| tile.samples..samples(tile.rect)).collect()
     }
 
     /// [`Canvas::advance`] by samples whose light paths are traced.

@@ -37,7 +37,7 @@ impl SpecularObjects {
             }
         }
         let finds_sources = surfaces.other_properties(&is_one).all(|of| !of.has_delta());
-        (area > 0.0).then(|| Self { is_one, primitives, area_until, finds_sources, paths_per_pixel: 1.0 })
+        (area > 0.0).then_some(Self { is_one, primitives, area_until, finds_sources, paths_per_pixel: 1.0 })
     }
 
     /// Whether an object is one of them.

@@ -179,10 +179,9 @@ impl Prepared {
             finished: samples.is_empty(),
         };
         let mut under_way: Vec<UnderWay> = tiles.iter().map(begin).collect();
-        let ranges = tiles.iter().map(|(_, samples)| samples).filter(|samples| !samples.is_empty());
-        let all = ranges.fold(u32::MAX..0, |all, own| all.start.min(own.start)..all.end.max(own.end));
+        let of_tiles: Vec<_> = tiles.iter().map(|(_, samples)| samples.clone()).collect();
         let whole = self.whole_rect();
-        for round in self.light_rounds(all) {
+        for round in self.light_rounds(&of_tiles) {
             if stopped.load(Ordering::Relaxed) {
                 break;
             }

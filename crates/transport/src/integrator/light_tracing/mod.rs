@@ -114,18 +114,19 @@ impl Prepared {
         }
     }
 
-    /// Samples in parts whose light paths are best traced at once: few enough for memory, and for a render to be stopped soon. All samples where
-    /// no light paths are traced.
-    pub fn light_rounds(&self, samples: Range<u32>) -> Vec<Range<u32>> {
-        let Some(specular_objects) = &self.specular_objects else { return vec![samples] };
+    /// The samples that tiles take, in rounds whose light paths are best traced at once: few enough for memory, and for a render to be stopped
+    /// soon. A round that no tile takes is left out. One round of all samples where no light paths are traced.
+    pub fn light_rounds(&self, of_tiles: &[Range<u32>]) -> Vec<Range<u32>> {
+        let of_tiles = of_tiles.iter().filter(|samples| !samples.is_empty());
+        let Some(first) = of_tiles.clone().map(|samples| samples.start).min() else { return Vec::new() };
+        let end = of_tiles.clone().map(|samples| samples.end).fold(first, u32::max);
+        let Some(specular_objects) = &self.specular_objects else { return vec![Range { start: first, end }] };
         let reached = self.pixels_of_light_path().map_or(1, |[width, height]| u64::from(width * height));
         let most =
             (PATHS_OF_ROUND / (reached * paths_of_sample(self, specular_objects))).clamp(1, MOST_SAMPLES_OF_ROUND);
-        samples
-            .clone()
-            .step_by(most as usize)
-            .map(|first| first..first.saturating_add(most as u32).min(samples.end))
-            .collect()
+        let rounds = (first..end).step_by(most as usize).map(|start| start..start.saturating_add(most as u32).min(end));
+        let is_taken = |round: &Range<u32>| of_tiles.clone().any(|own| own.start < round.end && round.start < own.end);
+        rounds.filter(is_taken).collect()
     }
 
     /// What light paths bring to a rectangle; `None` where none are traced.
@@ -150,8 +151,8 @@ impl Prepared {
         FilterSampler::reach_px(&self.scene.film.filter)
     }
 
-    /// Width and height of a block of pixels that one connection to the camera may reach, if light paths are traced and it may reach several:
-    /// their errors have a part in common.
+    /// Width and height of the block of pixels that one connection to the camera may reach, if it may reach several. The errors of these pixels
+    /// have a part in common. `None` where no light paths are traced.
     pub fn pixels_of_light_path(&self) -> Option<[u32; 2]> {
         let side = (2.0 * self.filter_reach_px()).ceil() as u32;
         (self.specular_objects.is_some() && side > 1).then_some([side; 2])

@@ -1,5 +1,5 @@
-//! Light paths bring the light that camera paths drop: the same picture with and without them, on scenes with various lamps, cameras and
-//! surfaces; and the same bytes however a picture is divided.
+//! Light paths bring the light that camera paths drop. Scenes with various lamps, cameras and surfaces are rendered with and without them, and
+//! must come to the same light. And a picture with light paths has the same bytes however it is divided.
 
 use super::find_specular_objects;
 use crate::film::{Film, PixelRect};
