@@ -75,7 +75,7 @@ pub(crate) struct Settings {
     /// Trace one path at a time, or many at once. Both give the same picture, bit for bit. Default: the faster one.
     #[arg(long = "loop", value_enum, value_name = "WHICH", help_heading = STUDY)]
     path_loop: Option<PathLoopArg>,
-    /// Try nothing before the picture: sample diffuse directions by the cosine, wavelengths alike in every pixel, and light paths only if always.
+    /// Try nothing before the picture: sample diffuse directions by the cosine, and wavelengths alike in every pixel. Light paths are then traced only with --light-tracing always.
     #[arg(long, help_heading = STUDY)]
     by_cosine: bool,
 }
