@@ -121,25 +121,45 @@ pub(crate) enum Tabulated {
     Inside,
 }
 
-/// A table that is a function of the facets and a range of indices alone, made once: images of roughness ask for many, and the
-/// materials of a scene for the same ones.
+/// Facets and a range of relative indices: all that a table is a function of.
+type Key = (Tabulated, (FacetDistribution, FacetMasking), [u64; 2], [u64; 2]);
+
+/// Tables of one sort, each made once: images of roughness ask for many, the materials of a scene for the same ones, and so does the same
+/// scene when it is prepared anew.
+pub(crate) struct SharedTables<T>(LazyLock<Mutex<HashMap<Key, Arc<T>>>>);
+
+impl<T> SharedTables<T> {
+    pub(crate) const fn new() -> Self {
+        Self(LazyLock::new(Mutex::default))
+    }
+
+    pub(crate) fn get(
+        &self,
+        of: Tabulated,
+        distribution: &Distribution,
+        eta: [f64; 2],
+        make: impl FnOnce() -> T,
+    ) -> Arc<T> {
+        let key = (of, distribution.kind(), distribution.alpha().map(f64::to_bits), eta.map(f64::to_bits));
+        let known = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(table) = known().get(&key) {
+            return Arc::clone(table);
+        }
+        // Not under the lock: making it hands work to threads that may ask for another.
+        let table = Arc::new(make());
+        Arc::clone(known().entry(key).or_insert(table))
+    }
+}
+
+/// A table of losses, from where all are kept.
 pub(crate) fn shared(
     of: Tabulated,
     distribution: &Distribution,
     eta: [f64; 2],
     make: impl FnOnce() -> LossTable,
 ) -> Arc<LossTable> {
-    type Kind = (FacetDistribution, FacetMasking);
-    type SharedTables = HashMap<(Tabulated, Kind, [u64; 2], [u64; 2]), Arc<LossTable>>;
-    static KNOWN: LazyLock<Mutex<SharedTables>> = LazyLock::new(Mutex::default);
-    let key = (of, distribution.kind(), distribution.alpha().map(f64::to_bits), eta.map(f64::to_bits));
-    let known = || KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some(table) = known().get(&key) {
-        return Arc::clone(table);
-    }
-    // Not under the lock: making it hands work to threads that may ask for another.
-    let table = Arc::new(make());
-    Arc::clone(known().entry(key).or_insert(table))
+    static KNOWN: SharedTables<LossTable> = SharedTables::new();
+    KNOWN.get(of, distribution, eta, make)
 }
 
 #[derive(Clone, Debug)]

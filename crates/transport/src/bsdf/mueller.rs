@@ -16,13 +16,14 @@
 //! Around a shading normal ([`Shading`]) the matrix is that of the directions as the BSDF takes them, in the frame of the real
 //! ones: polarisation follows the shading, and stays physical.
 
-use super::albedo::{Azimuths, NODES, node};
+use super::albedo::{Azimuths, NODES, SharedTables, Tabulated, node};
 use super::microfacet::{Distribution, Facet, mean_over_facets};
 use super::{Bsdf, Shading, shading};
 use crate::polarisation::across;
 use crate::polarisation::mueller::{self, DEPOLARISER, IDENTITY, Matrix, Mueller};
 use etalon_optics::{Lanes, Vec3};
 use rayon::prelude::*;
+use std::sync::Arc;
 
 /// How a direction came about that a matrix is asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -157,6 +158,17 @@ pub(super) struct PolarisedLoss {
 }
 
 impl PolarisedLoss {
+    /// The same as [`PolarisedLoss::new`], from where all tables are kept; `loss` follows from `of`.
+    pub(super) fn shared(
+        of: Tabulated,
+        eta: [f64; 2],
+        distribution: &Distribution,
+        loss: impl Fn(&Facet, f64) -> [f64; 2] + Sync,
+    ) -> Arc<Self> {
+        static KNOWN: SharedTables<PolarisedLoss> = SharedTables::new();
+        KNOWN.get(of, distribution, eta, || Self::new(eta, distribution, loss))
+    }
+
     /// Of facets that lose `loss` of each, (ℓ₀, ℓ₁) with s and p those of the facet, for relative indices within `eta`.
     pub(super) fn new(
         eta: [f64; 2],

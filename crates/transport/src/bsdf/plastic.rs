@@ -46,7 +46,7 @@ struct Rough {
     /// The least and the largest index.
     eta: [f64; 2],
     /// What the coat lets in of polarised light, where that is carried.
-    polarised: Option<PolarisedLoss>,
+    polarised: Option<Arc<PolarisedLoss>>,
 }
 
 impl Plastic {
@@ -177,7 +177,7 @@ impl Plastic {
     /// Makes the table that [`Plastic::mueller`] needs: what the facets of a rough coat do not reflect of each state they let in.
     pub(super) fn prepare_polarisation(&mut self) {
         if let Some(rough) = &mut self.rough {
-            rough.polarised = Some(PolarisedLoss::new(rough.eta, &rough.distribution, let_in));
+            rough.polarised = Some(PolarisedLoss::shared(Tabulated::Coat, rough.eta, &rough.distribution, let_in));
         }
     }
 

@@ -28,7 +28,7 @@ pub(super) struct Compensation {
     /// The least and the largest η.
     eta: [f64; 2],
     /// What losses do to polarised light, from outside and from inside, where that is carried.
-    pub(super) polarised: Option<Box<[PolarisedLoss; 2]>>,
+    pub(super) polarised: Option<[Arc<PolarisedLoss>; 2]>,
 }
 
 /// The interface at one wavelength, seen from the side of `wo`: index 0 is that side, 1 the other.
@@ -103,10 +103,11 @@ impl Boundary {
     pub(super) fn prepare_polarisation(&mut self, distribution: &Distribution) {
         if let Some(compensation) = &mut self.compensation {
             let eta = compensation.eta;
-            compensation.polarised = Some(Box::new([
-                PolarisedLoss::new(eta, distribution, |facet, eta| polarised_loss(distribution, facet, eta)),
-                PolarisedLoss::new(eta, distribution, |facet, eta| polarised_loss(distribution, facet, 1.0 / eta)),
-            ]));
+            let table = |of, eta_of: fn(f64) -> f64| {
+                let loss = |facet: &_, eta| polarised_loss(distribution, facet, eta_of(eta));
+                PolarisedLoss::shared(of, eta, distribution, loss)
+            };
+            compensation.polarised = Some([table(Tabulated::Outside, |eta| eta), table(Tabulated::Inside, f64::recip)]);
         }
     }
 }

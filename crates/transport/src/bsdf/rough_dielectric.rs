@@ -239,7 +239,7 @@ impl RoughDielectric {
                 let cos_t = fresnel::refracted_cosine(cos, eta).unwrap_or(0.0);
                 mueller::dielectric_transmission(cos, eta, cos_t)
             };
-            let forgotten = match boundary.compensation.as_ref().and_then(|c| c.polarised.as_deref()) {
+            let forgotten = match boundary.compensation.as_ref().and_then(|c| c.polarised.as_ref()) {
                 Some([outside, inside]) => {
                     let (near, far) = if from_outside { (outside, inside) } else { (inside, outside) };
                     let side_i = if local_i.z > 0.0 { near } else { far };
