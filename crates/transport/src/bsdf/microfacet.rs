@@ -61,15 +61,22 @@ impl Distribution {
 
     /// S = c(1 + 2Λ), so that Smith's masking is G₁ = 2c/(c + S), c = |cos θ|; of GGX √(z² + α_x² x² + α_y² y²).
     pub(crate) fn stretch(&self, w: Vec3<f64>) -> f64 {
-        let [x2, y2] = self.alpha.map(|alpha| alpha * alpha);
-        let spread = if x2 == y2 { x2 * (w.x * w.x + w.y * w.y) } else { x2 * w.x * w.x + y2 * w.y * w.y };
+        let spread = self.spread(w);
         match self.kind {
             FacetDistribution::Ggx => (w.z * w.z + spread).sqrt(),
             FacetDistribution::Beckmann => beckmann::stretch(w.z.abs(), spread.sqrt()),
         }
     }
 
+    /// α_x² x² + α_y² y².
+    #[inline]
+    fn spread(&self, w: Vec3<f64>) -> f64 {
+        let [x2, y2] = self.alpha.map(|alpha| alpha * alpha);
+        if x2 == y2 { x2 * (w.x * w.x + w.y * w.y) } else { x2 * w.x * w.x + y2 * w.y * w.y }
+    }
+
     /// G₂/G₁ of the direction from which facets are seen, of another on the same side: of the cosines `mu` and `mu_i` > 0 and stretches.
+    #[inline]
     fn mirrored(&self, (mu, stretch): (f64, f64), (mu_i, stretch_i): (f64, f64)) -> f64 {
         match self.masking {
             FacetMasking::Correlated => mu_i * (mu + stretch) / (mu * stretch_i + mu_i * stretch),

@@ -21,6 +21,7 @@
 use super::{Distribution, Facet, beckmann, crowded, gauss_rule, refined};
 use etalon_optics::Vec3;
 use etalon_scene::FacetDistribution;
+use etalon_simd::{Level, dispatch};
 use std::f64::consts::{FRAC_1_PI, FRAC_PI_2};
 use std::sync::LazyLock;
 
@@ -118,10 +119,6 @@ impl<'a> View<'a> {
 
     /// Integral over the facets of one azimuth, of their visible density times `loss`.
     fn along_azimuth(&self, azimuth: f64, loss: &impl Fn(&Facet) -> f64) -> f64 {
-        static RULE: LazyLock<Vec<(f64, f64)>> = LazyLock::new(|| {
-            let crowd = |(x, weight): &(f64, f64)| (crowded(*x).0, weight * crowded(*x).1);
-            gauss_rule(10).iter().map(crowd).collect()
-        });
         let (sin_phi, cos_phi) = azimuth.sin_cos();
         let (mu, [x, y]) = (self.wo.z, self.distribution.alpha);
         let (a, b) = (x * cos_phi, y * sin_phi);
@@ -138,34 +135,103 @@ impl<'a> View<'a> {
         for tangent in [below, above, 0.1 * steep, steep, (steep * below.max(above)).sqrt()] {
             cuts.put_within(tangent);
         }
-        let along_image = self.image.x * cos_phi + self.image.y * sin_phi;
-        let mut sum = 0.0;
-        for ends in cuts.sorted().windows(2).filter(|ends| ends[0] < ends[1]) {
+        let mut nodes = Nodes::between(cuts.sorted());
+        nodes.see(self, [cos_phi, sin_phi], [a, b]);
+        2.0 * FRAC_1_PI / (self.image_stretch + self.image.z) * nodes.sum(self.wo, loss)
+    }
+}
+
+/// Points of Gauss's rule between two cuts.
+const POINTS: usize = 10;
+/// The most nodes along an azimuth.
+const MOST_NODES: usize = (MOST_CUTS - 1) * POINTS;
+
+/// The facets of one azimuth at which the integrand is taken, a row for each number, so that vector instructions find all of them.
+struct Nodes {
+    count: usize,
+    /// Tangents of half their polar angles.
+    half: [f64; MOST_NODES],
+    /// The part of the polar angle that each stands for, then times the density with which it is seen.
+    weight: [f64; MOST_NODES],
+    /// x, y and z of normals.
+    h: [[f64; MOST_NODES]; 3],
+    cos: [f64; MOST_NODES],
+    mirrored: [f64; MOST_NODES],
+}
+
+impl Nodes {
+    fn between(cuts: &[f64]) -> Self {
+        static RULE: LazyLock<Vec<(f64, f64)>> = LazyLock::new(|| {
+            let crowd = |(x, weight): &(f64, f64)| (crowded(*x).0, weight * crowded(*x).1);
+            gauss_rule(POINTS).iter().map(crowd).collect()
+        });
+        let row = [0.0; MOST_NODES];
+        let mut nodes = Self { count: 0, half: row, weight: row, h: [row; 3], cos: row, mirrored: row };
+        for ends in cuts.windows(2).filter(|ends| ends[0] < ends[1]) {
             for (share, weight) in RULE.iter() {
-                let half = ends[0] + (ends[1] - ends[0]) * share;
-                // dθ/dt.
-                let per_half = 2.0 / (1.0 + half * half);
-                let (sin, cos) = (half * per_half, per_half - 1.0);
-                let mut seen = (self.image.z * cos + along_image * sin).max(0.0);
-                if self.distribution.kind == FacetDistribution::Beckmann {
-                    seen *= beckmann::over_ggx(sin * sin / (cos * cos));
-                }
-                let h = Vec3::new(a * sin, b * sin, cos).normalized();
-                let c = self.wo.dot(h).clamp(0.0, 1.0);
-                let wi = self.wo.reflected_about(h);
-                let mirrored = match wi.z > 0.0 {
-                    true => self.distribution.mirrored((mu, self.stretch), (wi.z, self.distribution.stretch(wi))),
-                    false => 0.0,
-                };
-                sum += (ends[1] - ends[0])
-                    * weight
-                    * per_half
-                    * seen
-                    * sin
-                    * loss(&Facet { cos: c, mirrored, h, wo: self.wo });
+                nodes.half[nodes.count] = ends[0] + (ends[1] - ends[0]) * share;
+                nodes.weight[nodes.count] = (ends[1] - ends[0]) * weight;
+                nodes.count += 1;
             }
         }
-        2.0 * FRAC_1_PI / (self.image_stretch + self.image.z) * sum
+        nodes
+    }
+
+    /// What `view` sees of them, in the azimuth of this cosine and sine and these slopes `at` tan = 1.
+    fn see(&mut self, view: &View<'_>, azimuth: [f64; 2], at: [f64; 2]) {
+        let nodes = self;
+        dispatch!(Level::best(); fn see(nodes: &mut Nodes, view: &View<'_>, azimuth: [f64; 2], at: [f64; 2]) {
+            let (distribution, wo) = (view.distribution, view.wo);
+            let along_image = view.image.x * azimuth[0] + view.image.y * azimuth[1];
+            // Up to whole vectors: what is beyond the last node weighs nothing. No index needs to be checked.
+            let count = nodes.count.next_multiple_of(8).min(MOST_NODES);
+            let row = [0.0; MOST_NODES];
+            let (mut sine, mut cosine, mut seen, mut wi_z, mut spread) = (row, row, row, row, row);
+            for i in 0..count {
+                // dθ/dt.
+                let per_half = 2.0 / (1.0 + nodes.half[i] * nodes.half[i]);
+                let (sin, cos) = (nodes.half[i] * per_half, per_half - 1.0);
+                (sine[i], cosine[i]) = (sin, cos);
+                seen[i] = (view.image.z * cos + along_image * sin).max(0.0);
+                let h = Vec3::new(at[0] * sin, at[1] * sin, cos).normalized();
+                let wi = wo.reflected_about(h);
+                (wi_z[i], spread[i]) = (wi.z, distribution.spread(wi));
+                nodes.weight[i] *= per_half;
+                (nodes.h[0][i], nodes.h[1][i], nodes.h[2][i]) = (h.x, h.y, h.z);
+                nodes.cos[i] = wo.dot(h).clamp(0.0, 1.0);
+            }
+            let mut stretch = spread;
+            match distribution.kind {
+                FacetDistribution::Ggx => {
+                    for i in 0..count {
+                        stretch[i] = (wi_z[i] * wi_z[i] + spread[i]).sqrt();
+                    }
+                }
+                FacetDistribution::Beckmann => {
+                    for i in 0..count {
+                        seen[i] *= beckmann::over_ggx(sine[i] * sine[i] / (cosine[i] * cosine[i]));
+                    }
+                    for i in 0..count {
+                        stretch[i] = beckmann::stretch(wi_z[i].abs(), spread[i].sqrt());
+                    }
+                }
+            }
+            for i in 0..count {
+                let mirrored = distribution.mirrored((wo.z, view.stretch), (wi_z[i], stretch[i]));
+                nodes.mirrored[i] = if wi_z[i] > 0.0 { mirrored } else { 0.0 };
+                nodes.weight[i] = nodes.weight[i] * seen[i] * sine[i];
+            }
+        });
+    }
+
+    /// The integral of `loss`.
+    fn sum(&self, wo: Vec3<f64>, loss: &impl Fn(&Facet) -> f64) -> f64 {
+        let mut sum = 0.0;
+        for i in 0..self.count {
+            let h = Vec3::new(self.h[0][i], self.h[1][i], self.h[2][i]);
+            sum += self.weight[i] * loss(&Facet { cos: self.cos[i], mirrored: self.mirrored[i], h, wo });
+        }
+        sum
     }
 }
 

@@ -19,11 +19,13 @@ pub(super) fn density(square: f64, z: f64) -> f64 {
 }
 
 /// The density of slopes of this length, squared, over GGX's.
+#[inline]
 pub(super) fn over_ggx(square: f64) -> f64 {
     if square > MOST_SQUARE { 0.0 } else { exp_neg(square) * (1.0 + square) * (1.0 + square) }
 }
 
 /// S = c·erf(c/s) + s·e^(−(c/s)²)/√π of a direction of the cosine c ≥ 0 that sees slopes of the width s: Smith's masking is G₁ = 2c/(c + S).
+#[inline]
 pub(super) fn stretch(c: f64, s: f64) -> f64 {
     let a = c / s;
     let tail = exp_neg(a * a);
