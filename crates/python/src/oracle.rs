@@ -79,7 +79,7 @@ pub(crate) fn judge(
     let verdict = py.detach(|| known::judge(truth, &reading, Budget::for_tests(tests).each()));
     Ok(json!({
         "truth": truth.name,
-        "value": truth.value,
+        "value": truth.value(),
         "mean": mean,
         "standard_error": standard_error,
         "passed": verdict.pass,

@@ -22,11 +22,11 @@ fn truths_hold_and_reject_what_stands_still() {
         let film = render(&scene, &Study::default());
         // The worst of them, a lamp found by chance, scatters by (1/√p)/128 = 2.5 % at most if points were independent, and
         // they are stratified.
-        let error = (mean_y(&film) / truth.value - 1.0).abs();
-        assert!(error < 0.04, "{}: {} is not {}", truth.name, mean_y(&film), truth.value);
+        let error = (mean_y(&film) / truth.value() - 1.0).abs();
+        assert!(error < 0.04, "{}: {} is not {}", truth.name, mean_y(&film), truth.value());
         assert_eq!(film.counters.nonfinite, 0, "{}", truth.name);
         assert_eq!(film.counters.time_draws, film.counters.paths);
-        let error = (mean_y(&render(&scene, &without())) / truth.value - 1.0).abs();
+        let error = (mean_y(&render(&scene, &without())) / truth.value() - 1.0).abs();
         // Of two lamps that take turns, half is seen either way: that truth is about wavelengths at each time.
         let take_turns = truth.claims.contains(&Claim::PhotometricSensor);
         assert!(error > 0.08 || take_turns, "{}: the mutant that stands still is not seen", truth.name);

@@ -40,8 +40,8 @@ fn plates_read_what_polarised_light_does_and_the_other_kernel_what_averaged_ligh
         let Some(averaged_name) = truth.name.strip_suffix("-polarised") else { continue };
         let Some(averaged) = truths().into_iter().find(|other| other.name == averaged_name) else { continue };
         let scene = parse(&truth.scene);
-        let apart = (truth.value - averaged.value).abs();
-        for (polarised, value) in [(true, truth.value), (false, averaged.value)] {
+        let apart = (truth.value() - averaged.value()).abs();
+        for (polarised, value) in [(true, truth.value()), (false, averaged.value())] {
             let read = mean_y(&scene, polarised, 16);
             let (mean, error) = (read.mean(), read.standard_error());
             assert!(

@@ -178,7 +178,7 @@ fn of_truth(name: &str) -> Result<Subject, Failure> {
         truth.files.iter().map(|file| NamedFile { name: file.name.clone(), bytes: file.bytes.clone() }).collect();
     let loaded = etalon_scene::parse_with_files(&truth.scene, name, &files, None);
     let scene = loaded.map_err(|e| Failure::run(miette!("{}", e.summary())))?.scene;
-    Ok(Subject { name: name.to_owned(), scene, truth: Some(truth.value) })
+    Ok(Subject { name: name.to_owned(), scene, truth: Some(truth.value()) })
 }
 
 fn write(folder: &Path, report: &StudyReport) -> Outcome {

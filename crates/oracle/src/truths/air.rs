@@ -7,6 +7,7 @@ use serde_json::json;
 
 use super::{
     Claim, Quantity, Truth,
+    expectation::Expectation,
     media::{boundary, medium},
     scene::{Scene, block, lambert, level_square},
 };
@@ -57,6 +58,9 @@ fn by_a_polariser() -> Vec<Truth> {
     ]
 }
 
+/// A slab, and one that forgets polarisation.
+type Slabs = LazyLock<[Air; 2], Box<dyn FnOnce() -> [Air; 2] + Send>>;
+
 /// A slab of air above a ground: its depth, cosines of sun and eye, azimuth between the ways of both, degrees, albedo of the ground.
 struct Case {
     name: &'static str,
@@ -99,12 +103,10 @@ impl Case {
         [i, -q, if self.leaving == Leaving::Upward { -u } else { u }]
     }
 
-    /// With the slab, and the same of a renderer that drops polarisation.
-    fn truths(&self, [slab, forgetful]: &[Air; 2]) -> Vec<Truth> {
+    /// With the slab, and the same of a renderer that drops polarisation, made when a value is asked for.
+    fn truths(&self, slabs: &Arc<Slabs>) -> Vec<Truth> {
         let &Self { name, depth, sun, leaving, eye, azimuth_deg, ground } = self;
         let azimuth = azimuth_deg.to_radians();
-        let seen = |slab: &Air| self.in_the_picture(slab.seen(sun, leaving, eye, azimuth, ground));
-        let (values, forgetful) = (seen(slab), seen(forgetful));
         let scene = self.scene();
         let parameters = [Quantity::Radiance, Quantity::Stokes1, Quantity::Stokes2];
         let own = Self { ..*self };
@@ -114,11 +116,22 @@ impl Case {
         let mut list = Vec::new();
         for (k, parameter) in parameters.into_iter().enumerate() {
             let by_orders = Arc::clone(&by_orders);
-            let truth = Truth::new(
+            let (case, slabs) = (Self { ..*self }, Arc::clone(slabs));
+            let work_out = move || {
+                let [values, forgetful] =
+                    slabs.each_ref().map(|slab| case.in_the_picture(slab.seen(sun, leaving, eye, azimuth, ground)));
+                let expectation = Expectation::new(values[k])
+                    .allows(1e-6 * values[0], "the slab is 2·10⁴ m wide, not endless; single precision");
+                match k {
+                    0 => expectation.or_else("polarisation forgotten before light is scattered again", forgetful[0]),
+                    _ => expectation.or_else("the other sign", -values[k]).or_else("light not polarised", 0.0),
+                }
+            };
+            let truth = Truth::later(
                 if k == 0 { name.to_owned() } else { format!("{name}-s{k}") },
                 &scene,
-                values[k],
                 format!("doubling for I, Q and U: τ = {depth}, μ₀ = {sun}, μ = {eye}, φ = {azimuth_deg}°, A = {ground}"),
+                work_out,
             )
             .because(
                 "Air scatters as dipoles do and absorbs nothing. Light that was scattered once is polarised, which changes how much of it goes where \
@@ -132,13 +145,9 @@ impl Case {
             )
             .reads(parameter)
             .claims(Claim::CarriesPolarisation)
-            .allows(1e-6 * values[0], "the slab is 2·10⁴ m wide, not endless; single precision")
             // What is polarised has less of light, and as much noise.
             .sees(if k == 0 { 0.03 } else { 0.06 });
-            list.push(match k {
-                0 => truth.or_else("polarisation forgotten before light is scattered again", forgetful[0]),
-                _ => truth.or_else("the other sign", -values[k]).or_else("light not polarised", 0.0),
-            });
+            list.push(truth);
         }
         list
     }
@@ -164,7 +173,8 @@ fn slabs() -> Vec<Truth> {
     ];
     const COSINES: [f64; 3] = [0.2, 0.4, 0.8];
     let of_depth = |depth: f64| {
-        let slabs = [Air::new(depth, &COSINES), Air::unpolarised(depth, &COSINES)];
+        let slabs: Arc<Slabs> =
+            Arc::new(LazyLock::new(Box::new(move || [Air::new(depth, &COSINES), Air::unpolarised(depth, &COSINES)])));
         cases
             .iter()
             .filter(move |case| case.depth == depth)

@@ -5,6 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use serde_json::{Value, json};
 
 use super::cie171::LUX;
+use super::expectation::Expectation;
 use super::meters::measured;
 use super::photometric_weight;
 use super::scene::Scene;
@@ -215,13 +216,24 @@ fn at(nm: f64) -> [f64; 2] {
     [nm - 5e-4, nm + 5e-4]
 }
 
-fn truth(name: String, scene: &Scene, value: f64, formula: &str) -> Truth {
-    Truth::new(name, scene, value, formula)
+fn truth(
+    name: String,
+    scene: &Scene,
+    formula: &str,
+    value: impl FnOnce() -> f64 + Send + 'static,
+    (mistake, mistaken): (&'static str, impl FnOnce(f64) -> f64 + Send + 'static),
+) -> Truth {
+    let work_out = move || {
+        let value = value();
+        Expectation::new(value)
+            .allows(1e-4 * value, "2e-5 for single precision, 2e-5 for quadratures, and the width of a meter's cone")
+            .or_else(mistake, mistaken(value))
+    };
+    Truth::later(name, scene, formula, work_out)
         .because(
             "Luminance and chromaticity of the sky are Perez's formula of the angles from the zenith and from the sun, with the numbers of the \
              paper; the spectrum of each chromaticity is the daylight S₀ + M₁S₁ + M₂S₂ of the CIE.",
         )
-        .allows(1e-4 * value, "2e-5 for single precision, 2e-5 for quadratures, and the width of a meter's cone")
         .sees(0.005)
 }
 
@@ -246,8 +258,9 @@ fn looks() -> Vec<Truth> {
             truth(
                 format!("daylight-luminance-{place}"),
                 &scene(),
-                value,
                 "Y_z F(θ, γ)/F(0, θₛ), over 683.002 lm/W · ∫ȳ dλ",
+                move || value,
+                ("another turbidity", move |_| zenith),
             )
             .confirmed("the spectrum, weighed with ȳ", 1e-6, move || {
                 (0..=470)
@@ -256,16 +269,18 @@ fn looks() -> Vec<Truth> {
                     .sum::<f64>()
                     / LUX
             })
-            .or_else("another turbidity", zenith)
             .claims(Claim::PhotometricSensor),
         );
         for nm in [450.0, 655.0] {
             let value = sky.radiance(toward, nm) / LUX;
             let grey = sky.luminance(toward) / LUX;
-            list.push(
-                truth(format!("daylight-at-{nm}-nanometres-{place}"), &scene().band(at(nm)), value, "Y S(λ)/∫ S ȳ dλ")
-                    .or_else("the same luminance without colour", grey),
-            );
+            list.push(truth(
+                format!("daylight-at-{nm}-nanometres-{place}"),
+                &scene().band(at(nm)),
+                "Y S(λ)/∫ S ȳ dλ",
+                move || value,
+                ("the same luminance without colour", move |_| grey),
+            ));
         }
     }
     list
@@ -286,7 +301,6 @@ fn falls() -> Vec<Truth> {
         };
         // What lies below the horizon gives a plane of tilt β the configuration factor (1 − cos β)/2.
         let below = PI * 0.5 * (1.0 - normal[2]) * radiance([0.0, 0.0, -1.0]);
-        let value = (Daylight::irradiance(normal, radiance) + below) / LUX;
         let meter = json!({ "type": "irradiance", "position_m": [0, 0, 0], "normal": normal });
         let scene =
             measured(&[meter]).light(json!({ "type": "environment", "daylight": sky.json() })).light_sampling(how);
@@ -295,15 +309,20 @@ fn falls() -> Vec<Truth> {
             Some(nm) => (format!("daylight-on-a-plane-at-{nm}-nanometres-by-{how}"), scene.band(at(nm))),
         };
         let turned = Daylight { sun: [-sky.sun[0], -sky.sun[1], sky.sun[2]], ..sky };
-        let elsewhere = Daylight::irradiance(normal, |toward| match band {
+        let elsewhere = move |toward: Vec3| match band {
             None => turned.luminance(toward),
             Some(nm) => turned.radiance(toward, nm),
+        };
+        let truth = truth(
+            name,
+            &scene,
+            "∫ L(θ, γ) cos θ dω",
+            move || (Daylight::irradiance(normal, radiance) + below) / LUX,
+            ("the sun on the other side", move |_| (Daylight::irradiance(normal, elsewhere) + below) / LUX),
+        )
+        .confirmed("midpoints over both angles", 3e-4, move || {
+            (Daylight::irradiance_by_midpoints(normal, radiance) + below) / LUX
         });
-        let truth = truth(name, &scene, value, "∫ L(θ, γ) cos θ dω")
-            .confirmed("midpoints over both angles", 3e-4, move || {
-                (Daylight::irradiance_by_midpoints(normal, radiance) + below) / LUX
-            })
-            .or_else("the sun on the other side", (elsewhere + below) / LUX);
         list.push(if band.is_none() { truth.claims(Claim::PhotometricSensor) } else { truth });
     }
     // y up, and a scale.
@@ -313,15 +332,17 @@ fn falls() -> Vec<Truth> {
     let meter = json!({ "type": "irradiance", "position_m": [0, 0, 0], "normal": [0, 1, 0] });
     let scene = measured(&[meter]).light(json!({ "type": "environment", "daylight": form }));
     let up = [0.0, 0.0, 1.0];
-    let value = 0.5 * Daylight::irradiance(up, |toward| sky.luminance(toward)) / LUX;
-    list.push(
-        truth("daylight-of-half-its-scale-with-y-up".to_owned(), &scene, value, "½∫ Y cos θ dω")
-            .confirmed("midpoints over both angles", 3e-4, move || {
-                0.5 * Daylight::irradiance_by_midpoints(up, |toward| sky.luminance(toward)) / LUX
-            })
-            .or_else("the whole scale", 2.0 * value)
-            .claims(Claim::PhotometricSensor),
-    );
+    let truth = truth(
+        "daylight-of-half-its-scale-with-y-up".to_owned(),
+        &scene,
+        "½∫ Y cos θ dω",
+        move || 0.5 * Daylight::irradiance(up, |toward| sky.luminance(toward)) / LUX,
+        ("the whole scale", |value| 2.0 * value),
+    )
+    .confirmed("midpoints over both angles", 3e-4, move || {
+        0.5 * Daylight::irradiance_by_midpoints(up, |toward| sky.luminance(toward)) / LUX
+    });
+    list.push(truth.claims(Claim::PhotometricSensor));
     list
 }
 

@@ -55,7 +55,7 @@ pub fn exchange_files(truths: &[Truth]) -> Vec<ExchangeFile> {
 fn entry(truth: &Truth) -> Value {
     let [width, height] = truth.film_px();
     let name = &truth.name;
-    let known: Vec<_> = truth.mistakes.iter().map(|m| json!({ "what": m.what, "value": m.value })).collect();
+    let known: Vec<_> = truth.mistakes().iter().map(|m| json!({ "what": m.what, "value": m.value })).collect();
     json!({
         "name": name,
         "scene": format!("scenes/{name}.json"),
@@ -67,12 +67,12 @@ fn entry(truth: &Truth) -> Value {
         "band_nm": truth.band_nm,
         "quantity": truth.quantity.name(),
         "crop_px": truth.crop_px,
-        "value": truth.value,
+        "value": truth.value(),
         "formula": truth.formula,
         "derivation": truth.derivation,
         "mistakes": known,
-        "tolerance": truth.tolerance,
-        "tolerance_reason": truth.tolerance_reason,
+        "tolerance": truth.tolerance(),
+        "tolerance_reason": truth.tolerance_reason(),
         // A dark picture without known mistakes need not be measured finely: nothing may come through at all.
         "must_resolve": Some(truth.must_resolve()).filter(|bias| bias.is_finite()),
         "claims": truth.claims.iter().map(|claim| claim.name()).collect::<Vec<_>>(),

@@ -283,6 +283,6 @@ mod tests {
             assert!((polarised_plate(degrees.to_radians().cos(), 1.5) - value).abs() < 1e-9, "{degrees}");
         }
         let sandwich = stacks().pop().unwrap();
-        assert!((sandwich.value - 0.914_048).abs() < 1e-6, "{}", sandwich.value);
+        assert!((sandwich.value() - 0.914_048).abs() < 1e-6, "{}", sandwich.value());
     }
 }

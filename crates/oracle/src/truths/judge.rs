@@ -29,11 +29,11 @@ pub fn judge(truth: &Truth, reading: &Reading, significance: f64) -> Verdict {
     if reading.nonfinite > 0 {
         return Verdict::broken(&truth.name, format!("{} samples were not finite numbers", reading.nonfinite));
     }
-    let mut verdict = z_verdict(&truth.name, &reading.estimate, truth.value, truth.tolerance, significance);
+    let mut verdict = z_verdict(&truth.name, &reading.estimate, truth.value(), truth.tolerance(), significance);
     let needed = truth.must_resolve();
     if verdict.pass && verdict.resolvable_bias > needed {
-        let noise = (verdict.resolvable_bias - truth.tolerance) / (needed - truth.tolerance).max(0.0);
-        let nearest = truth.mistakes.iter().find(|mistake| (mistake.value - truth.value).abs() <= needed);
+        let noise = (verdict.resolvable_bias - truth.tolerance()) / (needed - truth.tolerance()).max(0.0);
+        let nearest = truth.mistakes().iter().find(|mistake| (mistake.value - truth.value()).abs() <= needed);
         let what = match nearest {
             Some(mistake) => format!("\"{}\" ({:.10})", mistake.what, mistake.value),
             None => format!("a bias of {} %", 100.0 * truth.must_see),
@@ -55,7 +55,7 @@ pub fn judge(truth: &Truth, reading: &Reading, significance: f64) -> Verdict {
     }
     if !verdict.pass {
         let noise = verdict.resolvable_bias;
-        let likely = truth.mistakes.iter().find(|mistake| (reading.estimate.mean - mistake.value).abs() <= noise);
+        let likely = truth.mistakes().iter().find(|mistake| (reading.estimate.mean - mistake.value).abs() <= noise);
         if let Some(mistake) = likely {
             verdict.evidence += &format!("; this is what one reads with \"{}\"", mistake.what);
         }

@@ -24,6 +24,7 @@ mod densities;
 mod dimensions;
 mod enclosures;
 mod exchange;
+mod expectation;
 mod facets;
 mod films;
 mod fluorescence;
@@ -75,11 +76,7 @@ mod tubes;
 mod view_factors;
 mod water;
 
-use std::{
-    fmt,
-    sync::{Arc, LazyLock},
-    thread,
-};
+use std::{sync::LazyLock, thread};
 
 use serde_json::{Value, json};
 
@@ -87,6 +84,8 @@ use crate::statistics::poisson_mean_bound;
 pub use cie171::{LUX, cie171};
 pub use claim::Claim;
 pub use exchange::{ExchangeFile, exchange_files};
+use expectation::{Expectation, Expected};
+pub use expectation::{Mistake, SecondOpinion};
 pub use irradiance::{
     cylinder_factor, disk_irradiance, lambert_polygon, rectangle_corner_factor, sphere_irradiance, stack_transmittance,
     walsh_reflectance,
@@ -128,46 +127,6 @@ impl Quantity {
     }
 }
 
-/// A mistake that a renderer might make, and what the picture would show.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Mistake {
-    /// The mistake.
-    pub what: &'static str,
-    /// What the picture's mean would be.
-    pub value: f64,
-}
-
-/// The value once more, by a way that shares no formula with the first.
-#[derive(Clone)]
-pub struct SecondOpinion {
-    /// The way.
-    pub how: &'static str,
-    /// Largest relative difference from the value that the way's own error explains.
-    pub tolerance: f64,
-    evaluate: Arc<dyn Fn() -> f64 + Send + Sync>,
-}
-
-impl SecondOpinion {
-    fn new(how: &'static str, tolerance: f64, evaluate: impl Fn() -> f64 + Send + Sync + 'static) -> Self {
-        Self { how, tolerance, evaluate: Arc::new(evaluate) }
-    }
-
-    /// Evaluates it, which may take a second.
-    #[must_use]
-    pub fn value(&self) -> f64 {
-        (self.evaluate)()
-    }
-}
-
-impl fmt::Debug for SecondOpinion {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        out.debug_struct("SecondOpinion")
-            .field("how", &self.how)
-            .field("tolerance", &self.tolerance)
-            .finish_non_exhaustive()
-    }
-}
-
 /// A file that a scene names.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SceneFile {
@@ -187,8 +146,7 @@ pub struct Truth {
     pub scene: String,
     /// The files that the scene names, which lie beside it.
     pub files: Vec<SceneFile>,
-    /// What the mean over the pixels must be. It may be negative only if it is no radiance.
-    pub value: f64,
+    expected: Expected,
     /// What is read off the picture.
     pub quantity: Quantity,
     /// The pixels that are read: columns x0 to x1, rows y0 to y1 from the top, the second of each excluded. All if `None`.
@@ -199,12 +157,6 @@ pub struct Truth {
     pub derivation: &'static str,
     /// The value by another way, where there is one.
     pub second_opinion: Option<SecondOpinion>,
-    /// What plausible mistakes would show.
-    pub mistakes: Vec<Mistake>,
-    /// Absolute deviation that is not an error: of the scene as a stand-in for an ideal one, and of single precision.
-    pub tolerance: f64,
-    /// Where the tolerance comes from.
-    pub tolerance_reason: &'static str,
     /// The largest relative bias that a reading may leave undetected and still be accepted. Known mistakes nearer than that
     /// tighten it further.
     pub must_see: f64,
@@ -217,24 +169,37 @@ pub struct Truth {
     pub brightest: Option<f64>,
 }
 
-/// Relative rounding allowed to an f32 renderer: some thousand roundings of 6e-8 that do not average out.
-const SINGLE_PRECISION: f64 = 2e-5;
-
 impl Truth {
     fn new(name: impl Into<String>, scene: &scene::Scene, value: f64, formula: impl Into<String>) -> Self {
+        Self::expecting(name, scene, formula, Expected::Known(Expectation::new(value)))
+    }
+
+    /// A truth whose value takes quadrature: it is worked out when it is first asked for.
+    fn later(
+        name: impl Into<String>,
+        scene: &scene::Scene,
+        formula: impl Into<String>,
+        work_out: impl FnOnce() -> Expectation + Send + 'static,
+    ) -> Self {
+        Self::expecting(name, scene, formula, Expected::later(work_out))
+    }
+
+    fn expecting(
+        name: impl Into<String>,
+        scene: &scene::Scene,
+        formula: impl Into<String>,
+        expected: Expected,
+    ) -> Self {
         Self {
             name: name.into(),
             scene: scene.to_json(),
             files: scene.files(),
-            value,
+            expected,
             quantity: if scene.has_meters() { Quantity::Meters } else { Quantity::Radiance },
             crop_px: None,
             formula: formula.into(),
             derivation: "",
             second_opinion: None,
-            mistakes: Vec::new(),
-            tolerance: SINGLE_PRECISION * value.abs(),
-            tolerance_reason: "rounding of a renderer in single precision, 2e-5 relative",
             must_see: 0.02,
             claims: scene.claims(),
             band_nm: scene.band_nm(),
@@ -247,8 +212,12 @@ impl Truth {
         self
     }
 
-    fn or_else(mut self, what: &'static str, value: f64) -> Self {
-        self.mistakes.push(Mistake { what, value });
+    fn or_else(self, what: &'static str, value: f64) -> Self {
+        self.changed(move |expectation| expectation.or_else(what, value))
+    }
+
+    fn changed(mut self, change: impl FnOnce(Expectation) -> Expectation + Send + 'static) -> Self {
+        self.expected = self.expected.changed(change);
         self
     }
 
@@ -286,16 +255,40 @@ impl Truth {
     }
 
     /// Adds an absolute allowance with its reason to that for single precision.
-    fn allows(mut self, tolerance: f64, reason: &'static str) -> Self {
-        self.tolerance += tolerance;
-        self.tolerance_reason = reason;
-        self
+    fn allows(self, tolerance: f64, reason: &'static str) -> Self {
+        self.changed(move |expectation| expectation.allows(tolerance, reason))
     }
 
     /// Says how much radiance there is at most anywhere in the scene.
     fn no_brighter_than(mut self, radiance: f64) -> Self {
         self.brightest = Some(radiance);
         self
+    }
+
+    /// What the mean over the pixels must be. It may be negative only if it is no radiance.
+    ///
+    /// The first call may work it out, which takes up to a few tenths of a second.
+    #[must_use]
+    pub fn value(&self) -> f64 {
+        self.expected.get().value
+    }
+
+    /// What plausible mistakes would show.
+    #[must_use]
+    pub fn mistakes(&self) -> &[Mistake] {
+        &self.expected.get().mistakes
+    }
+
+    /// Absolute deviation that is not an error: of the scene as a stand-in for an ideal one, and of single precision.
+    #[must_use]
+    pub fn tolerance(&self) -> f64 {
+        self.expected.get().tolerance
+    }
+
+    /// Where the tolerance comes from.
+    #[must_use]
+    pub fn tolerance_reason(&self) -> &'static str {
+        self.expected.get().tolerance_reason
     }
 
     /// Whether the truth applies to a renderer that meets these claims and no others.
@@ -308,8 +301,9 @@ impl Truth {
     /// distance of the nearest known mistake. A dark picture is held to its mistakes alone.
     #[must_use]
     pub fn must_resolve(&self) -> f64 {
-        let relative = if self.value == 0.0 { f64::INFINITY } else { self.must_see * self.value.abs() };
-        self.mistakes.iter().map(|mistake| (mistake.value - self.value).abs()).fold(relative, f64::min)
+        let value = self.value();
+        let relative = if value == 0.0 { f64::INFINITY } else { self.must_see * value.abs() };
+        self.mistakes().iter().map(|mistake| (mistake.value - value).abs()).fold(relative, f64::min)
     }
 
     /// A bound on the absolute bias of a reading that took this many paths and cut some, though the scene did not end them. None of these
@@ -344,11 +338,12 @@ impl Truth {
 
 /// Every truth, those for polarised light included: filter by [`Truth::applies_to`].
 ///
-/// The first call works out their values, which takes about a second; later ones copy the list.
+/// The first call writes down their scenes and works out most of their values, which takes some tenths of a second; later ones copy the list.
+/// Values that take long are worked out when they are asked for.
 #[must_use]
 pub fn truths() -> Vec<Truth> {
     static LIST: LazyLock<Vec<Truth>> = LazyLock::new(|| {
-        // Some groups take much quadrature: on all cores at once.
+        // On all cores at once.
         thread::scope(|scope| {
             let groups = GROUPS.map(|group| scope.spawn(group));
             groups.into_iter().flat_map(|group| group.join().expect("values are worked out without a panic")).collect()

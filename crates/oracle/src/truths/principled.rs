@@ -97,7 +97,7 @@ fn sheen() -> Truth {
         "0.8 (1 − cos θ_d)⁵ cos θ_i",
         &[("half as much", Surface { sheen: 0.4, ..surface })],
     );
-    let value = truth.value;
+    let value = truth.value();
     let by_normal = 0.8 * grazing(80_f64.to_radians().cos()) * 80_f64.to_radians().cos();
     truth.or_else("divided by π", value / PI).or_else("by the angle to the normal", by_normal)
 }
@@ -117,7 +117,7 @@ fn specular() -> Truth {
     // G₂ = 1/(1 + Λ_o + Λ_i).
     let lambda = |deg: f64| 0.5 * ((1.0 + (0.36 * deg.to_radians().tan()).powi(2)).sqrt() - 1.0);
     let (l_o, l_i) = (lambda(50.0), lambda(35.0));
-    let correlated = truth.value * (1.0 + l_o) * (1.0 + l_i) / (1.0 + l_o + l_i);
+    let correlated = truth.value() * (1.0 + l_o) * (1.0 + l_i) / (1.0 + l_o + l_i);
     truth.or_else("masking by height", correlated).sees(1e-3)
 }
 
@@ -170,7 +170,7 @@ fn metal() -> Truth {
         &[("a dielectric", Surface { metallic: 0.0, ..surface })],
     );
     let (o, i) = (direction(65.0, 20.0), direction(60.0, 195.0));
-    let (value, fresnel) = (truth.value, surface.fresnel(dot(o, normalize(add(o, i)))));
+    let (value, fresnel) = (truth.value(), surface.fresnel(dot(o, normalize(add(o, i)))));
     let diffuse = DIFFUSE.f_cos(o, i);
     truth
         .or_else("the colour of the base at every angle", value * surface.base / fresnel)
@@ -186,7 +186,7 @@ fn coat() -> Truth {
         "¼·0.9 (0.04 + 0.96 (1 − cos θ_d)⁵) D G₁ G₁ cos θ_i, α = 0.3 of D and ¼ of G₁",
         &[("the width squared", Surface { coat_alpha: 0.09, ..surface })],
     );
-    let value = truth.value;
+    let value = truth.value();
     truth
         .or_else(
             "divided by both cosines, as other facets are",

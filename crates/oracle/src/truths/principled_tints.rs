@@ -58,13 +58,13 @@ pub(super) fn truths() -> Vec<Truth> {
     let sheen = cloth.f_cos(o, i);
     let tinted = |name, base, y: f64| {
         let truth = of(name, base, ("specular_tint", &metal), highlight, y, at);
-        let value = truth.value;
+        let value = truth.value();
         truth.or_else("the base itself as tint", value - darker(y))
     };
     let sheen_tint = json!(0.8);
     let of_cloth =
         of("principled-coloured-sheen-in-daylight", &colour, ("sheen_tint", &sheen_tint), cloth, luminance, at);
-    let value = of_cloth.value;
+    let value = of_cloth.value();
     vec![
         tinted("principled-coloured-highlight-in-daylight", &colour, luminance),
         tinted("principled-highlight-coloured-by-an-image-in-daylight", &image, of_image),

@@ -1,11 +1,15 @@
 //! Materials beyond the neutral form: one-sided, coated, rough diffuse, thin; roughness and reflectance as scenes state them.
 
-use std::f64::consts::PI;
+use std::{
+    f64::consts::PI,
+    sync::{Arc, LazyLock},
+};
 
 use serde_json::{Value, json};
 
 use super::{
     Claim, Truth,
+    expectation::Expectation,
     furnaces::conductor_reflectance,
     scene::{Scene, black, disk, grey_hdr, level_square, parallelogram, sphere},
     walsh_reflectance,
@@ -290,26 +294,36 @@ fn rough_metal() -> Vec<Truth> {
     };
     let mut list = Vec::new();
     for alpha in [0.3, 0.9] {
-        let lost = ggx_albedo(alpha, mu, None, Masking::Correlated).reflected;
+        // Both truths read the same quadrature.
+        let lost = Arc::new(LazyLock::new(move || ggx_albedo(alpha, mu, None, Masking::Correlated).reflected));
         let scene = |how: &str| {
             plate(tilt_deg, false).thing(thing(perfect(json!({ "alpha": alpha, "multiple_scattering": how }))))
         };
         list.push(
-            Truth::new(format!("rough-metal-of-{alpha}-lost"), &scene("lost"), lost, "∫ D(h) (o·h)/cos θₒ G(o, r) dω_h")
+            Truth::later(format!("rough-metal-of-{alpha}-lost"), &scene("lost"), "∫ D(h) (o·h)/cos θₒ G(o, r) dω_h", {
+                let lost = Arc::clone(&lost);
+                move || {
+                    Expectation::new(**lost)
+                        .or_else("masking not correlated", ggx_albedo(alpha, mu, None, Masking::Separable).reflected)
+                }
+            })
                 .because("Facets that reflect everything, met once: the directional albedo of GGX with Smith's masking, correlated in height.")
                 .allows(2e-5, "the quadrature over facets is known to 1e-5; and single precision")
-                .or_else("masking not correlated", ggx_albedo(alpha, mu, None, Masking::Separable).reflected)
                 .or_else("what meets several facets given back", 1.0)
                 .claims(Claim::CorrelatedMasking)
                 .sees(2e-3),
         );
         list.push(
-            Truth::new(format!("rough-metal-of-{alpha}-compensated"), &scene("compensated"), 1.0, "L = 1")
-                .because("A metal that reflects everything returns all light once what meets several facets is given back.")
-                .allows(1e-3, "a single direction is returned to 1e-4 and diffuse light to 1.5e-4, by tables; and single precision")
-                .or_else("lost", lost)
-                .claims(Claim::LosslessRoughMetal)
-                .sees(3e-3),
+            Truth::later(format!("rough-metal-of-{alpha}-compensated"), &scene("compensated"), "L = 1", move || {
+                Expectation::new(1.0).or_else("lost", **lost)
+            })
+            .because("A metal that reflects everything returns all light once what meets several facets is given back.")
+            .allows(
+                1e-3,
+                "a single direction is returned to 1e-4 and diffuse light to 1.5e-4, by tables; and single precision",
+            )
+            .claims(Claim::LosslessRoughMetal)
+            .sees(3e-3),
         );
     }
     // A constant roughness by an image, and by number, in parallel light.
@@ -390,20 +404,30 @@ fn rough_glass() -> Vec<Truth> {
             .object(parallelogram([-60.0, -60.0, -0.01], [120.0, 0.0, 0.0], [0.0, 120.0, 0.0]), black())
     };
     let because = "What facets of glass reflect at the first meeting, by Fresnel's equations and Smith's masking; what they refract is absorbed behind.";
-    let round = ggx_albedo(0.4, mu, Some(1.5), Masking::Correlated).reflected;
-    let wide = anisotropic_ggx_albedo([0.6, 0.15], o, Some(1.5), Masking::Correlated).reflected;
-    let across = anisotropic_ggx_albedo([0.15, 0.6], o, Some(1.5), Masking::Correlated).reflected;
     let smooth = fresnel_exact(mu, 1.5).reflectance();
-    let truth = |name: &str, scene: &Scene, value: f64| {
-        Truth::new(name, scene, value, "∫ D(h) (o·h)/cos θₒ R G(o, r) dω_h")
+    let round = move || {
+        Expectation::new(ggx_albedo(0.4, mu, Some(1.5), Masking::Correlated).reflected).or_else("smooth", smooth)
+    };
+    // Two truths read both, along the grain and across it.
+    let albedos = Arc::new(LazyLock::new(move || {
+        [[0.6, 0.15], [0.15, 0.6]]
+            .map(|alpha| anisotropic_ggx_albedo(alpha, o, Some(1.5), Masking::Correlated).reflected)
+    }));
+    let brushed = |own: usize, mistake: &'static str| {
+        let albedos = Arc::clone(&albedos);
+        move || Expectation::new(albedos[own]).or_else("smooth", smooth).or_else(mistake, albedos[1 - own])
+    };
+    let formula = "∫ D(h) (o·h)/cos θₒ R G(o, r) dω_h";
+    let finished = |truth: Truth| {
+        truth
             .because(because)
             .allows(2e-5, "the quadrature over facets is known to 1e-5; and single precision")
-            .or_else("smooth", smooth)
             .claims(Claim::CorrelatedMasking)
             .claims(Claim::AveragesPolarisation)
             .sees(0.01)
     };
-    let brushed = |turn: f64| scene(json!({ "alpha_u": 0.6, "alpha_v": 0.15, "tangent_rotation_deg": turn }));
+    let turned = |turn: f64| scene(json!({ "alpha_u": 0.6, "alpha_v": 0.15, "tangent_rotation_deg": turn }));
+    let (along, across) = ("brushed-glass-reflects-along-the-grain", "brushed-glass-reflects-across-the-grain");
     let ball = Scene::pinhole([0.0, 0.0, 5.0], [0.0; 3], 16.0)
         .thing(json!({
             "shape": sphere([0.0; 3], 1.0),
@@ -414,9 +438,9 @@ fn rough_glass() -> Vec<Truth> {
         .film(16, 16)
         .spp(512);
     vec![
-        truth("rough-glass-reflects", &scene(json!({ "alpha": 0.4 })), round),
-        truth("brushed-glass-reflects-along-the-grain", &brushed(0.0), wide).or_else("widths exchanged", across),
-        truth("brushed-glass-reflects-across-the-grain", &brushed(90.0), across).or_else("not turned", wide),
+        finished(Truth::later("rough-glass-reflects", &scene(json!({ "alpha": 0.4 })), formula, round)),
+        finished(Truth::later(along, &turned(0.0), formula, brushed(0, "widths exchanged"))),
+        finished(Truth::later(across, &turned(90.0), formula, brushed(1, "not turned"))),
         Truth::new("furnace-glass-of-roughness-by-an-image", &ball, 1.0, "L = 1")
             .because("A rough interface that absorbs nothing sends all light somewhere; in uniform light that is L.")
             .or_else("n² of the way in not undone", 2.25)

@@ -40,9 +40,9 @@ fn agreement(truth: &Truth, paths: u64, seed: u64, significance: f64) -> Verdict
     assert_eq!(reading.nonfinite, 0, "{}", truth.name);
     // This renderer computes in f64, so nothing is allowed for single precision; 1e-7 is for the width of the light meter's
     // plate, over which an irradiance changes by (1e-4 m / 1 m)², and for panels in place of infinite planes.
-    let single_precision = 2e-5 * truth.value;
-    let tolerance = truth.tolerance - single_precision + 1e-7 * truth.value;
-    z_verdict(&truth.name, &reading.estimate, truth.value, tolerance, significance)
+    let single_precision = 2e-5 * truth.value();
+    let tolerance = truth.tolerance() - single_precision + 1e-7 * truth.value();
+    z_verdict(&truth.name, &reading.estimate, truth.value(), tolerance, significance)
 }
 
 fn all_agree(paths: u64, seed: u64) {

@@ -234,7 +234,7 @@ fn measured(
     interrupt: &Interrupt,
 ) -> Result<(Reading, u32), Stop> {
     let truth = measurement.truth;
-    let wanted = if args.names.is_empty() { THOROUGH_SEES } else { THOROUGH_SEES_BY_NAME } * truth.value.abs();
+    let wanted = if args.names.is_empty() { THOROUGH_SEES } else { THOROUGH_SEES_BY_NAME } * truth.value().abs();
     let (mut step, mut seen_before) = (0, f64::INFINITY);
     loop {
         let reading = measurement.render_to(MORE.pow(step), significance, interrupt)?;

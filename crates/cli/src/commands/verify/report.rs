@@ -82,7 +82,7 @@ impl Row {
         Self {
             name: truth.name.clone(),
             formula: truth.formula.clone(),
-            truth: truth.value,
+            truth: truth.value(),
             measured: estimate.mean,
             standard_error: estimate.standard_error,
             z: verdict.statistic,
@@ -268,7 +268,7 @@ impl Report {
 
     pub(super) fn push_missing(&mut self, truth: &Truth) {
         if self.table {
-            print::line(&format!("{:<44} {:>14.10} {:>14}", truth.name, truth.value, "no picture"));
+            print::line(&format!("{:<44} {:>14.10} {:>14}", truth.name, truth.value(), "no picture"));
         }
         self.missing.get_or_insert_default().push(truth.name.clone());
     }

@@ -1,9 +1,12 @@
 //! Films on facets, on panes, with images of their thickness, on solids that touch, and in polarised light.
 
+use std::sync::{Arc, LazyLock};
+
 use serde_json::{Value, json};
 
 use super::{at, by_wave_equation, coated, passing, reflecting, seen};
-use crate::laws::{CoatedInterface, FilmLayer, FilmWaves, coated_ggx_albedo};
+use crate::laws::{CoatedInterface, FilmLayer, FilmWaves, SingleScattering, coated_ggx_albedo};
+use crate::truths::expectation::Expectation;
 use crate::truths::scene::{Scene, black, block, conductor, disk, glass, grey_hdr, level_square, solid};
 use crate::truths::stokes::{PARAMETERS, stokes_of};
 use crate::truths::{Claim, Truth};
@@ -18,21 +21,20 @@ pub(super) fn rough() -> Vec<Truth> {
     let oxide = CoatedInterface { incident: 1.0, layers: vec![[2.4, 0.0, 60.0]], substrate: [2.2, 2.9] };
     let mut metal = coated(conductor(2.2, 2.9), &oxide.layers);
     (metal["alpha"], metal["multiple_scattering"]) = (json!(alpha), json!("lost"));
-    let of_metal = |stack: &CoatedInterface, waves: fn(&CoatedInterface, f64, f64) -> FilmWaves| {
-        coated_ggx_albedo(alpha, mu, None, |cos| [waves(stack, nm, cos).reflectance(), 0.0]).reflected
+    let of_metal = move |stack: &CoatedInterface| {
+        coated_ggx_albedo(alpha, mu, None, |cos| [stack.waves(nm, cos).reflectance(), 0.0]).reflected
     };
     let bare = CoatedInterface { layers: Vec::new(), ..oxide.clone() };
     let again = oxide.clone();
     let mut list = vec![
-        Truth::new(
+        Truth::later(
             "anodised-titanium-that-is-rough",
             &reflecting(metal, mu, true).band(at(nm)),
-            of_metal(&oxide, CoatedInterface::waves),
             "∫ R(o·h) D G₂/(4 cos θ_o) dω: α = 0.4, n 1, 2.4, 2.2 + 2.9i; 60 nm at 480 nm, cos θ = 0.8",
+            move || Expectation::new(of_metal(&oxide)).or_else("the film left out", of_metal(&bare)),
         )
         .because(BECAUSE)
         .confirmed(AGAIN, 2e-4, move || coated_ggx_albedo(alpha, mu, None, by_wave_equation(&again, nm)).reflected)
-        .or_else("the film left out", of_metal(&bare, CoatedInterface::waves))
         .allows(1e-5, "the quadrature errs by 1e-5")
         .claims(Claim::CorrelatedMasking)
         .sees(0.01),
@@ -42,40 +44,49 @@ pub(super) fn rough() -> Vec<Truth> {
     rough["alpha"] = json!(alpha);
     let stack =
         CoatedInterface { incident: 1.0, layers: vec![[2.35, 0.0, 60.0], [1.46, 0.0, 90.0]], substrate: [1.5, 0.0] };
-    let of_glass = |stack: &CoatedInterface| {
+    let of_glass = move |stack: &CoatedInterface| {
         coated_ggx_albedo(alpha, mu, Some(1.5), |cos| {
             let waves = stack.waves(nm, cos);
             [waves.reflectance(), waves.transmittance()]
         })
     };
     let turned = CoatedInterface { layers: vec![stack.layers[1], stack.layers[0]], ..stack.clone() };
-    let (found, mistaken) = (of_glass(&stack), of_glass(&turned));
-    let (again, once_more) = (stack.clone(), stack);
+    let (again, once_more) = (stack.clone(), stack.clone());
+    // Both truths read the same quadratures.
+    let shares = Arc::new(LazyLock::new(move || [&stack, &turned].map(of_glass)));
+    let expected = |share: fn(&SingleScattering) -> f64| {
+        let shares = Arc::clone(&shares);
+        move || {
+            let [found, mistaken] = &**shares;
+            Expectation::new(share(found)).or_else("the order of the layers turned", share(mistaken))
+        }
+    };
     let name = "coated-glass-that-is-rough";
     let formula = "∫ D (o·h)/cos θ_o [R G₂(o, r) or T G₁G₁(o, t)] dω: α = 0.3, n 1, 2.35 (60 nm), 1.46 (90 nm), 1.5 at 480 nm, cos θ = 0.7";
     list.push(
-        Truth::new(name, &reflecting(rough.clone(), mu, true).band(at(nm)), found.reflected, formula)
-            .because(BECAUSE)
-            .confirmed(AGAIN, 2e-3, move || {
-                coated_ggx_albedo(alpha, mu, Some(1.5), by_wave_equation(&again, nm)).reflected
-            })
-            .or_else("the order of the layers turned", mistaken.reflected)
-            .allows(1e-5, "the quadrature errs by 1e-5")
-            .claims(Claim::CorrelatedMasking)
-            .sees(0.01),
+        Truth::later(
+            name,
+            &reflecting(rough.clone(), mu, true).band(at(nm)),
+            formula,
+            expected(|found| found.reflected),
+        )
+        .because(BECAUSE)
+        .confirmed(AGAIN, 2e-3, move || coated_ggx_albedo(alpha, mu, Some(1.5), by_wave_equation(&again, nm)).reflected)
+        .allows(1e-5, "the quadrature errs by 1e-5")
+        .claims(Claim::CorrelatedMasking)
+        .sees(0.01),
     );
     list.push(
-        Truth::new(
+        Truth::later(
             format!("{name}-seen-through"),
             &passing(rough, mu, true).band(at(nm)),
-            found.refracted / 2.25,
             format!("{formula}, over n²"),
+            expected(|found| found.refracted / 2.25),
         )
         .because(BECAUSE)
         .confirmed(AGAIN, 2e-3, move || {
             coated_ggx_albedo(alpha, mu, Some(1.5), by_wave_equation(&once_more, nm)).refracted / 2.25
         })
-        .or_else("the order of the layers turned", mistaken.refracted / 2.25)
         .allows(1e-5, "the quadrature errs by 1e-5")
         .sees(0.01),
     );

@@ -38,7 +38,7 @@ mod tests {
         assert_eq!(names.len(), cases.len());
         for case in &cases {
             let Some(second) = &case.truth.second_opinion else { continue };
-            let (value, expected) = (second.value(), case.truth.value);
+            let (value, expected) = (second.value(), case.truth.value());
             assert!((value - expected).abs() <= second.tolerance * expected, "{}: {expected} {value}", case.truth.name);
         }
     }
