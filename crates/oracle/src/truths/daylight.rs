@@ -1,6 +1,6 @@
 //! The sky of Preetham, Shirley and Smits (SIGGRAPH 1999), and CIE daylight by its colour temperature.
 
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::f64::consts::{PI, TAU};
 
 use serde_json::{Value, json};
 
@@ -9,7 +9,7 @@ use super::expectation::Expectation;
 use super::meters::measured;
 use super::photometric_weight;
 use super::scene::Scene;
-use super::skylight::direction;
+use super::skylight::{direction, midpoints};
 use super::{Claim, Truth};
 use crate::quadrature::rectangle;
 use crate::vector::{Vec3, dot, normalize};
@@ -182,17 +182,7 @@ impl Daylight {
 
     /// The same by midpoints over both angles.
     fn irradiance_by_midpoints(normal: Vec3, radiance: impl Fn(Vec3) -> f64) -> f64 {
-        let (rows, columns) = (1000_u32, 600_u32);
-        let mut sum = 0.0;
-        for row in 0..rows {
-            let zenith = FRAC_PI_2 * (f64::from(row) + 0.5) / f64::from(rows);
-            for column in 0..columns {
-                let azimuth = TAU * (f64::from(column) + 0.5) / f64::from(columns);
-                let toward = [zenith.sin() * azimuth.cos(), zenith.sin() * azimuth.sin(), zenith.cos()];
-                sum += zenith.sin() * radiance(toward) * dot(toward, normal).max(0.0);
-            }
-        }
-        sum * FRAC_PI_2 / f64::from(rows) * TAU / f64::from(columns)
+        midpoints([1000, 600], normal, radiance)
     }
 
     fn json(&self) -> Value {

@@ -95,17 +95,20 @@ impl Sky {
 
 /// Irradiance on a plane of this unit normal from above, by midpoints over the angles.
 pub(super) fn by_midpoints(normal: Vec3, radiance: impl Fn(Vec3) -> f64) -> f64 {
-    let (rows, columns) = (1500, 600);
+    midpoints([1500, 600], normal, radiance)
+}
+
+/// The same with so many angles from the zenith and so many azimuths.
+pub(super) fn midpoints([rows, columns]: [u32; 2], normal: Vec3, radiance: impl Fn(Vec3) -> f64) -> f64 {
+    let azimuth = |column: u32| TAU * (f64::from(column) + 0.5) / f64::from(columns);
+    let azimuths: Vec<(f64, f64)> = (0..columns).map(|column| azimuth(column).sin_cos()).collect();
     let over = |row: u32| {
-        let zenith = FRAC_PI_2 * (f64::from(row) + 0.5) / f64::from(rows);
-        let sum: f64 = (0..columns)
-            .map(|column| {
-                let azimuth = TAU * (f64::from(column) + 0.5) / f64::from(columns);
-                let toward = [zenith.sin() * azimuth.cos(), zenith.sin() * azimuth.sin(), zenith.cos()];
-                radiance(toward) * dot(toward, normal).max(0.0)
-            })
-            .sum();
-        sum * zenith.sin()
+        let (sine, cosine) = (FRAC_PI_2 * (f64::from(row) + 0.5) / f64::from(rows)).sin_cos();
+        let at = |(sin, cos): &(f64, f64)| {
+            let toward = [sine * cos, sine * sin, cosine];
+            radiance(toward) * dot(toward, normal).max(0.0)
+        };
+        azimuths.iter().map(at).sum::<f64>() * sine
     };
     (0..rows).map(over).sum::<f64>() * (FRAC_PI_2 / f64::from(rows)) * (TAU / f64::from(columns))
 }
