@@ -38,7 +38,7 @@ pub use polarisation::{
     Polarises, Turn, TurnedBy, mueller_is_physical, mueller_is_reciprocal, stokes_along, stokes_along_paths_is_exact,
 };
 pub use refraction::{Crossing, mirror_reflection, snell, snell_sweep, total_internal_reflection};
-pub use sampling::{energy_is_not_created, furnace_agrees, pdf_integrates_to_one, samples_follow_pdf};
+pub use sampling::{Albedos, energy_is_not_created, furnace_agrees, pdf_integrates_to_one, samples_follow_pdf};
 pub use scattering::{etendue_is_conserved, f_and_pdf_are_proper, is_isotropic, is_reciprocal, sample_is_consistent};
 pub use thin_film::{CoatedInterface, FilmLayer, FilmWaves};
 pub use trees::{built_mesh_is_tight, near_surfaces_are_hit, needles_are_hit_where_they_are, neighbours_change_no_hit};

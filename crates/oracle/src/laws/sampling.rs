@@ -128,42 +128,70 @@ fn albedo(subject: &dyn Scatters, wo: Vec3, wavelength_nm: f64) -> Integral {
     Integral { value: smooth.value + sharp, error: smooth.error }
 }
 
+/// The albedo of a subject in each of the cases that the laws try, by quadrature.
+///
+/// Two laws read them, and finding them takes longer than either.
+#[derive(Clone, Debug)]
+pub struct Albedos {
+    cases: Vec<(Vec3, f64, Integral)>,
+    epsilon: f64,
+    seed: u64,
+}
+
+impl Albedos {
+    /// Those of a subject.
+    #[must_use]
+    pub fn new(subject: &dyn Scatters, seed: u64) -> Self {
+        let of = |(wo, wavelength_nm)| (wo, wavelength_nm, albedo(subject, wo, wavelength_nm));
+        Self { cases: cases(subject, seed).into_iter().map(of).collect(), epsilon: subject.epsilon(), seed }
+    }
+
+    /// See [`energy_is_not_created`].
+    #[must_use]
+    pub fn create_no_energy(&self) -> Verdict {
+        const LAW: &str = "a surface returns no more light than it receives";
+        let verdicts = self.cases.iter().map(|(wo, wavelength_nm, albedo)| {
+            let bound = albedo.error.max(1e-6) + 64.0 * self.epsilon;
+            let story = format!("wo {wo:?}, {wavelength_nm} nm: albedo {:.9} ± {:.1e}", albedo.value, albedo.error);
+            let excess = if albedo.value.is_nan() { f64::NAN } else { (albedo.value - 1.0).max(0.0) };
+            Verdict::bounded(LAW, excess, bound, story)
+        });
+        Verdict::worst_of(LAW, verdicts)
+    }
+
+    /// See [`furnace_agrees`]. The subject must be the one whose albedos these are.
+    #[must_use]
+    pub fn agree_with_samples(&self, subject: &dyn Scatters, budget: Budget) -> Verdict {
+        const LAW: &str = "sampled and integrated albedo agree";
+        let significance = budget.split(self.cases.len()).each();
+        let verdicts = self.cases.iter().enumerate().map(|(i, &(wo, wavelength_nm, albedo))| {
+            let n_o = side_index(subject, wo, wavelength_nm);
+            let mut numbers = Uniform::new(self.seed ^ (i as u64) << 32);
+            let weights: Welford = (0..SAMPLES)
+                .map(|_| {
+                    subject.sample(wo, draw(subject, &mut numbers), wavelength_nm).map_or(0.0, |drawn| {
+                        drawn.weight * (side_index(subject, drawn.wi, wavelength_nm) / n_o).powi(2)
+                    })
+                })
+                .collect();
+            let tolerance = albedo.error.max(1e-6) + 256.0 * self.epsilon;
+            let mut verdict = z_verdict(LAW, &weights.estimate(), albedo.value, tolerance, significance);
+            verdict.evidence = format!("wo {wo:?}, {wavelength_nm} nm: {}", verdict.evidence);
+            verdict
+        });
+        Verdict::worst_of(LAW, verdicts)
+    }
+}
+
 /// A BSDF returns no more light than it receives: its albedo in a white furnace is at most 1, in the deterministic
 /// quadrature of f and delta weights.
 pub fn energy_is_not_created(subject: &dyn Scatters, seed: u64) -> Verdict {
-    const LAW: &str = "a surface returns no more light than it receives";
-    let verdicts = cases(subject, seed).into_iter().map(|(wo, wavelength_nm)| {
-        let albedo = albedo(subject, wo, wavelength_nm);
-        let bound = albedo.error.max(1e-6) + 64.0 * subject.epsilon();
-        let story = format!("wo {wo:?}, {wavelength_nm} nm: albedo {:.9} ± {:.1e}", albedo.value, albedo.error);
-        let excess = if albedo.value.is_nan() { f64::NAN } else { (albedo.value - 1.0).max(0.0) };
-        Verdict::bounded(LAW, excess, bound, story)
-    });
-    Verdict::worst_of(LAW, verdicts)
+    Albedos::new(subject, seed).create_no_energy()
 }
 
 /// The white furnace, sampled: the mean weight of 65536 samples is the albedo that quadrature finds, by a z-test.
 ///
 /// This is what sees a sampler that misses a part of the BSDF, counts a lobe twice, or weighs it by the wrong density.
 pub fn furnace_agrees(subject: &dyn Scatters, budget: Budget, seed: u64) -> Verdict {
-    const LAW: &str = "sampled and integrated albedo agree";
-    let cases = cases(subject, seed);
-    let significance = budget.split(cases.len()).each();
-    let verdicts = cases.into_iter().enumerate().map(|(i, (wo, wavelength_nm))| {
-        let albedo = albedo(subject, wo, wavelength_nm);
-        let n_o = side_index(subject, wo, wavelength_nm);
-        let mut numbers = Uniform::new(seed ^ (i as u64) << 32);
-        let weights: Welford = (0..SAMPLES)
-            .map(|_| {
-                subject
-                    .sample(wo, draw(subject, &mut numbers), wavelength_nm)
-                    .map_or(0.0, |drawn| drawn.weight * (side_index(subject, drawn.wi, wavelength_nm) / n_o).powi(2))
-            })
-            .collect();
-        let tolerance = albedo.error.max(1e-6) + 256.0 * subject.epsilon();
-        let mut verdict = z_verdict(LAW, &weights.estimate(), albedo.value, tolerance, significance);
-        verdict.evidence = format!("wo {wo:?}, {wavelength_nm} nm: {}", verdict.evidence);
-        verdict
-    });
-    Verdict::worst_of(LAW, verdicts)
+    Albedos::new(subject, seed).agree_with_samples(subject, budget)
 }
