@@ -15,7 +15,7 @@ const RANGE_NM: [f64; 2] = [400.0, 700.0];
 
 /// A sky, as the oracle sees a light at infinity.
 struct Sky {
-    light: SkyLight,
+    light: Arc<SkyLight>,
     irradiance: fn([f64; 3]) -> Option<f64>,
 }
 
@@ -27,19 +27,19 @@ fn directions() -> [Vec3<f64>; 2] {
 fn standard(number: u8, ground: f64, irradiance: fn([f64; 3]) -> Option<f64>) -> Sky {
     let [sun, up] = directions().map(|direction| direction.to_array());
     let sky = CieSky { number, up, sun, zenith: Spectrum::ONE, ground };
-    Sky { light: SkyLight::new(&sky, RANGE_NM), irradiance }
+    Sky { light: Arc::new(SkyLight::new(&sky, RANGE_NM)), irradiance }
 }
 
 fn daylight(turbidity: f64, ground: f64) -> Sky {
     let [sun, up] = directions().map(|direction| direction.to_array());
     let mean = Spectrum::daylight([0.0; 2]).unwrap();
     let sky = DaylightSky { turbidity, up, sun, ground, mean };
-    Sky { light: SkyLight::daylight(&sky, RANGE_NM), irradiance: |_| None }
+    Sky { light: Arc::new(SkyLight::daylight(&sky, RANGE_NM)), irradiance: |_| None }
 }
 
 impl Emits for Sky {
     fn sample(&self, from_m: [f64; 3], u: [f64; 2]) -> Option<Emitted> {
-        let s = Light::Sky(Arc::new(self.light.clone())).sample(Vec3::from_array(from_m), u, 0.0)?;
+        let s = Light::Sky(Arc::clone(&self.light)).sample(Vec3::from_array(from_m), u, 0.0)?;
         let Density::SolidAngle(pdf) = s.density else { panic!("a sky has no delta") };
         let SkyLook { relative, colour, .. } = self.light.look(s.wi);
         assert_eq!((s.target, s.surface), (Target::Infinity, SurfaceId::NONE));
