@@ -1,6 +1,6 @@
 //! The two builders of trees: the same hits of both, and of the crate `obvhs` with its own traversal.
 
-use super::tree::at_each_level;
+use super::brute_force::at_each_level;
 use crate::test_support::*;
 use crate::{Geometry, Instance, Motion, Pose, Primitive, PrimitiveId, Ray, Sphere, SurfaceId, TreeBuilder, Triangle};
 use etalon_optics::Vec3;

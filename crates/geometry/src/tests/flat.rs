@@ -1,6 +1,6 @@
 //! Few primitives: what is filtered many at once, for one ray or for eight, is what each primitive answers alone.
 
-use super::tree::check_geometry;
+use super::brute_force::check_geometry;
 use crate::level;
 use crate::test_support::*;
 use crate::{Geometry, LANES, Primitive, PrimitiveId, Ray, Rays, SurfaceId, SurfacePoint, Triangle};

@@ -1,6 +1,6 @@
 //! Geometry that is placed is as good as geometry that is there (hard case 17).
 
-use super::tree;
+use super::brute_force;
 use crate::test_support::*;
 use crate::{Cylinder, Disk, Triangle};
 use crate::{Geometry, Instance, Parallelogram, Placement, Primitive, PrimitiveId, Ray, Sphere, SurfaceId};
@@ -87,8 +87,8 @@ pub(super) fn placed_soup(random: &mut Random, count: usize) -> Vec<Primitive> {
 fn tree_equals_brute_force_on_instances_within_instances() {
     for seed in 0..3 {
         for count in [2, 40] {
-            let hits = tree::at_each_level(|_| {
-                tree::check(placed_soup(&mut Random::new(50 + seed), count), 4_000, 150 + seed, |l| l)
+            let hits = brute_force::at_each_level(|_| {
+                brute_force::check(placed_soup(&mut Random::new(50 + seed), count), 4_000, 150 + seed, |l| l)
             });
             assert!(hits > 0.15, "only {hits} of the rays hit anything");
         }
@@ -124,10 +124,10 @@ fn tree_equals_brute_force_on_placed_meshes() {
                 place(&placed[i * 7 / 4 % 4], rows, by)
             })
             .collect();
-        tree::check(primitives, 6_000, 180 + seed, |l| l)
+        brute_force::check(primitives, 6_000, 180 + seed, |l| l)
     };
     for seed in 0..3 {
-        let hits = tree::at_each_level(|_| hits(seed));
+        let hits = brute_force::at_each_level(|_| hits(seed));
         assert!(hits > 0.3, "only {hits} of the rays hit anything");
     }
 }

@@ -1,5 +1,6 @@
 //! Tests of the whole: the tree against brute force, watertightness, spheres, slabs, and rays that leave surfaces.
 
+mod brute_force;
 mod builders;
 mod cylinders;
 mod flat;

@@ -1,6 +1,6 @@
 //! What moves is, at each moment, what stands still there.
 
-use super::tree::{at_each_level, check_geometry};
+use super::brute_force::{at_each_level, check_geometry};
 use crate::test_support::*;
 use crate::{Aabb, Geometry, Instance, Motion, Parallelogram, Placement, Pose, Primitive, Ray, ShapeError, SurfaceId};
 use etalon_optics::Vec3;

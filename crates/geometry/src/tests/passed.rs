@@ -1,7 +1,7 @@
 //! A walk that passes surfaces meets each hit of its ray exactly once.
 
+use super::brute_force::at_each_level;
 use super::instances::placed_soup;
-use super::tree::at_each_level;
 use crate::test_support::*;
 use crate::traverse::all_of;
 use crate::{Geometry, Hit, Passed, Primitive, PrimitiveId, Ray, Sphere};

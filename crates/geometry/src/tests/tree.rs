@@ -1,96 +1,10 @@
 //! The tree finds what brute force finds.
 
+use super::brute_force::{agrees, check};
+use crate::level;
 use crate::test_support::*;
 use crate::{Disk, Geometry, Parallelogram, Primitive, PrimitiveId, Ray, Sphere, SurfaceId, Triangle};
-use crate::{level, traverse};
-use etalon_optics::{Real, Vec3};
-use etalon_simd::Level;
-
-/// Compares closest hits (bit for bit) and occlusion for one ray in both scalar types; counts hits.
-pub(super) fn agrees(geometry: &Geometry, line: Line, t_max: f64, leaves: PrimitiveId, time: f64) -> usize {
-    fn one<R: Real>(geometry: &Geometry, line: Line, t_max: f64, leaves: PrimitiveId, time: f64) -> usize {
-        let leaves = leaves.into();
-        let ray = Ray::<R> { t_max: R::from_f64(t_max), leaves, time, ..Ray::free(line.0.cast(), line.1.cast()) };
-        let Some(query) = crate::query::Query::new(&ray) else {
-            assert!(geometry.closest_hit(&ray).is_none() && !geometry.occluded(&ray));
-            return 0;
-        };
-        let (tree, flat) = (geometry.closest(&query), geometry.closest_flat(&query));
-        assert_eq!(tree, flat, "{ray:?}");
-        let occluded = geometry.any_flat(&query);
-        assert_eq!(geometry.occluded(&ray), occluded, "{ray:?}");
-        if let Some(tree) = geometry.tree() {
-            let primitives = geometry.primitives();
-            let scaled = flat.map(|(hit, id)| (R::from_f64(hit.t * query.scale), id));
-            assert_eq!(geometry.closest_hit(&ray).map(|hit| (hit.t, hit.surface)), scaled, "{ray:?}");
-            // Rays, too, not queries made of them.
-            let start =
-                flat.and_then(|(hit, id)| crate::Hit::new(crate::ray::RawHit { t: hit.t * query.scale, ..hit }, id));
-            // Whatever instruction set the tree is made for.
-            for level in level::all() {
-                assert_eq!(traverse::closest(level, tree, primitives, &query), flat, "{level:?} {ray:?}");
-                assert_eq!(traverse::any(level, tree, primitives, &query), occluded, "{level:?} {ray:?}");
-                assert_eq!(traverse::closest(level, tree, primitives, &ray), start, "{level:?} {ray:?}");
-                assert_eq!(traverse::any(level, tree, primitives, &ray), occluded, "{level:?} {ray:?}");
-            }
-            assert_eq!(traverse::closest_deep(tree, primitives, &query), flat, "{ray:?}");
-            assert_eq!(traverse::any_deep(tree, primitives, &query), occluded, "{ray:?}");
-        }
-        if let Some(few) = geometry.small_scene() {
-            for level in level::all() {
-                assert_eq!(few.closest(level, geometry.primitives(), &query), flat, "{level:?} {ray:?}");
-                assert_eq!(few.any(level, geometry.primitives(), &query), occluded, "{level:?} {ray:?}");
-            }
-        }
-        if let Some((_, closest)) = flat {
-            // What a shadow ray aims at does not hide it.
-            let aimed = Ray { aims_at: closest, ..ray };
-            let query = crate::query::Query::new(&aimed).unwrap();
-            assert_eq!(geometry.occluded(&aimed), geometry.any_flat(&query), "{aimed:?}");
-            // One that leaves it goes on.
-            let left = Ray { leaves: closest, ..ray };
-            let query = crate::query::Query::new(&left).unwrap();
-            assert_eq!(geometry.closest(&query), geometry.closest_flat(&query), "{left:?}");
-            assert_eq!(geometry.occluded(&left), geometry.any_flat(&query), "{left:?}");
-        }
-        usize::from(flat.is_some())
-    }
-    one::<f64>(geometry, line, t_max, leaves, time) + one::<f32>(geometry, line, t_max, leaves, time)
-}
-
-/// Holds the trees of some primitives, one for each instruction set, against brute force on `rays` adversarial rays each; returns the
-/// least fraction of hits.
-pub(super) fn check(primitives: Vec<Primitive>, rays: usize, seed: u64, place: impl Fn(Line) -> Line) -> f64 {
-    at_each_level(|level| {
-        let geometry = Geometry::build_with(primitives.clone(), 0).unwrap();
-        assert!(geometry.tree().is_none_or(|tree| tree.lanes() == crate::bvh::node::leaf_lanes(level)));
-        check_geometry(&geometry, rays, seed, &place)
-    })
-}
-
-/// The least of what comes of some work done with each instruction set taken for the best.
-pub(super) fn at_each_level(work: impl Fn(Level) -> f64) -> f64 {
-    level::all().into_iter().map(|level| level::forced(level, || work(level))).fold(f64::INFINITY, f64::min)
-}
-
-/// The same of what serves a geometry.
-pub(super) fn check_geometry(geometry: &Geometry, rays: usize, seed: u64, place: impl Fn(Line) -> Line) -> f64 {
-    // Nothing depends on them where nothing moves.
-    let mut times = Random::new(seed ^ 1 << 32);
-    let mut random = Random::new(seed);
-    let features = features(geometry.primitives());
-    let mut hits = 0;
-    for _ in 0..rays {
-        let line = place(line(&mut random, &features));
-        let t_max = if random.below(4) == 0 { random.unit() * 2.0 } else { f64::INFINITY };
-        let leaves = match random.below(3) {
-            0 => PrimitiveId(random.below(geometry.len()) as u32),
-            _ => PrimitiveId::NONE,
-        };
-        hits += agrees(geometry, line, t_max, leaves, times.unit());
-    }
-    hits as f64 / (2 * rays) as f64
-}
+use etalon_optics::Vec3;
 
 #[test]
 fn tree_equals_brute_force_on_soups_of_all_scales() {
