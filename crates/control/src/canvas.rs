@@ -6,15 +6,9 @@
 use crate::sample_allocation::SampleAllocation;
 use etalon_transport::render::TILE;
 use etalon_transport::sampler::mix;
-use etalon_transport::{Control, Counters, Film, PixelRect, Prepared, Splats, ThreadError, TileSums};
-use rayon::prelude::*;
+use etalon_transport::{Control, Counters, Film, Piece, PixelRect, Prepared, ThreadError, TileSums};
 use serde::{Deserialize, Serialize};
-use std::ops::Range;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
-
-/// Camera paths after which a tile is put down, so that a stop need not wait for all of a tile's samples.
-const PATHS_OF_PIECE: u64 = 1 << 15;
 
 /// A share of a picture's tiles: number `index` of `of`, counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -40,9 +34,6 @@ pub struct Tile {
     /// What was counted on the way.
     pub counters: Counters,
 }
-
-/// Hears what a piece of a tile took and what the tile holds now, and says whether to go on.
-type OnPiece<'a> = dyn Fn(&Counters, PixelRect, &TileSums) -> Control + Sync + 'a;
 
 /// A picture under way. It may be read while others work on it.
 #[derive(Debug)]
@@ -122,8 +113,9 @@ impl Canvas {
         if !state.film.fits(tile.rect, sums) {
             return false;
         }
-        state.put(number, tile, sums);
+        state.film.put(tile.rect, sums);
         state.film.counters.merge(&tile.counters);
+        state.tiles[number] = tile.clone();
         true
     }
 
@@ -149,78 +141,35 @@ impl Canvas {
         self.state.into_inner().unwrap_or_else(PoisonError::into_inner).film
     }
 
-    /// Renders each tile on to the number of samples a pixel that `samples` says for it, by pieces. `on_piece` hears what a piece of a tile took and what the tile
-    /// holds now; once it says stop, pieces that are under way are finished and no other is begun.
+    /// Renders each tile on to the number of samples a pixel that `samples` says for it. `on_piece` hears of each piece of a tile; once it says stop,
+    /// pieces that are under way are finished and no other is begun.
     pub fn advance(
         &self,
         prepared: &Prepared,
-        samples: &(dyn Fn(PixelRect) -> u32 + Sync),
+        samples: &dyn Fn(PixelRect) -> u32,
         threads: Option<usize>,
-        on_piece: &OnPiece<'_>,
+        on_piece: &(dyn Fn(&Piece<'_>) -> Control + Sync),
     ) -> Result<(), ThreadError> {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build()?;
-        let stopped = AtomicBool::new(false);
-        for round in prepared.light_rounds(&self.missing(samples)) {
-            if stopped.load(Ordering::Relaxed) {
-                break;
-            }
-            let splats = pool.install(|| prepared.splats(round.clone(), self.rect));
-            let target = |rect: PixelRect| samples(rect).min(round.end);
-            self.advance_by(prepared, &target, &splats, &pool, (&stopped, on_piece));
-        }
-        Ok(())
+        let missing = |tile: &Tile| (tile.rect, tile.samples..samples(tile.rect));
+        let tiles: Vec<_> = self.state().tiles.iter().map(missing).collect();
+        prepared.render_tiles(&tiles, threads, &|number| self.tile(number).1, &|piece| {
+            self.state().add(piece);
+            on_piece(piece)
+        })
     }
 
-    /// The samples that tiles lack of what `samples` says for them.
-    fn missing(&self, samples: &(dyn Fn(PixelRect) -> u32 + Sync)) -> Vec<Range<u32>> {
-        self.state().tiles.iter().map(|tile| tile.samples..samples(tile.rect)).collect()
-    }
-
-    /// [`Canvas::advance`] by samples whose light paths are traced.
-    fn advance_by(
-        &self,
-        prepared: &Prepared,
-        samples: &(dyn Fn(PixelRect) -> u32 + Sync),
-        splats: &Splats,
-        pool: &rayon::ThreadPool,
-        (stopped, on_piece): (&AtomicBool, &OnPiece<'_>),
-    ) {
-        pool.install(|| {
-            (0..self.tiles()).into_par_iter().for_each(|number| {
-                if stopped.load(Ordering::Relaxed) {
-                    return;
-                }
-                let (mut tile, mut sums) = self.tile(number);
-                let samples = samples(tile.rect);
-                let piece = (PATHS_OF_PIECE / tile.rect.area()).max(1) as u32;
-                while tile.samples < samples && !stopped.load(Ordering::Relaxed) {
-                    let until = tile.samples.saturating_add(piece).min(samples);
-                    let counters = prepared.render_tile(tile.rect, tile.samples..until, splats, &mut sums);
-                    tile.samples = until;
-                    tile.counters.merge(&counters);
-                    {
-                        let mut state = self.state();
-                        state.put(number, &tile, &sums);
-                        state.film.counters.merge(&counters);
-                    }
-                    if on_piece(&counters, tile.rect, &sums) == Control::Stop {
-                        stopped.store(true, Ordering::Relaxed);
-                    }
-                }
-            });
-        });
-    }
-
-    /// A thread that panicked has left whole tiles only.
+    /// A thread that panicked has left whole pieces only.
     fn state(&self) -> MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
 impl State {
-    fn put(&mut self, number: usize, tile: &Tile, sums: &TileSums) {
-        self.film.put(tile.rect, sums);
-        self.tiles[number] = tile.clone();
+    fn add(&mut self, piece: &Piece<'_>) {
+        let tile = &mut self.tiles[piece.number];
+        tile.samples = piece.samples.end;
+        tile.counters.merge(piece.counters);
+        self.film.add(piece);
     }
 }
 

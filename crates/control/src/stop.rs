@@ -295,9 +295,9 @@ pub fn render_canvas(
         }
         pass = pass.min((end / PASSES).max(WORTH_A_PASS).next_multiple_of(replicates));
         let target = |rect| settled.samples_of(rect, done + pass, replicates);
-        canvas.advance(prepared, &target, threads, &|counters, rect, sums| {
-            watch.work(counters);
-            watch.tile(rect, sums);
+        canvas.advance(prepared, &target, threads, &|piece| {
+            watch.work(piece.counters);
+            watch.tile(piece.rect, piece.sums);
             watch.control()
         })?;
         if !canvas.has_reached(&target) {

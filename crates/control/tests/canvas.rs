@@ -42,7 +42,7 @@ fn by_stages(prepared: &Prepared, shard: Shard, stages: &[u32]) -> Canvas {
     let rect = prepared.whole(None).rect;
     let mut canvas = Canvas::new(prepared, rect, shard, None);
     for &samples in stages {
-        canvas.advance(prepared, &|_| samples, Some(2), &|_, _, _| Control::Continue).unwrap();
+        canvas.advance(prepared, &|_| samples, Some(2), &|_| Control::Continue).unwrap();
         let next = Canvas::new(prepared, rect, shard, None);
         for number in 0..canvas.tiles() {
             let (tile, sums) = canvas.tile(number);
@@ -80,10 +80,10 @@ fn a_canvas_that_is_stopped_goes_on_where_it_was() {
     let prepared = room();
     let film = prepared.render(&prepared.whole(Some(1)), &|_| Control::Continue).unwrap();
     let canvas = Canvas::new(&prepared, prepared.whole(None).rect, Shard::WHOLE, None);
-    canvas.advance(&prepared, &|_| 8, Some(1), &|_, _, _| Control::Stop).unwrap();
+    canvas.advance(&prepared, &|_| 8, Some(1), &|_| Control::Stop).unwrap();
     assert_eq!(canvas.samples(), [0, 8]);
-    canvas.advance(&prepared, &|_| 5, Some(2), &|_, _, _| Control::Continue).unwrap();
+    canvas.advance(&prepared, &|_| 5, Some(2), &|_| Control::Continue).unwrap();
     assert_eq!(canvas.samples(), [5, 8]);
-    canvas.advance(&prepared, &|_| 8, Some(2), &|_, _, _| Control::Continue).unwrap();
+    canvas.advance(&prepared, &|_| 8, Some(2), &|_| Control::Continue).unwrap();
     assert_eq!(canvas.into_film(), film);
 }

@@ -81,6 +81,6 @@ pub use media::DEPTH as MOST_SOLIDS_AT_ONCE;
 pub use plan::{Carried, Effect, EffectName, PathLoop, Plan, Study, StudyError};
 pub use render::features::Features;
 pub use render::tune::{prepare, prepare_frame, prepare_study};
-pub use render::{Control, Extent, ThreadError};
+pub use render::{Control, Extent, Piece, ThreadError};
 pub use scene::prepare::Prepared;
 pub use scene::prepare_error::PrepareError;

@@ -122,7 +122,7 @@ fn threads_stages_and_replays_give_the_same_bytes() {
 }
 
 #[test]
-fn a_stopped_render_keeps_whole_tiles_only() {
+fn a_stopped_render_keeps_the_pieces_that_it_finished() {
     let prepared = prepare(&room()).unwrap();
     let film = prepared.render(&prepared.whole(Some(1)), &|_| Control::Stop).unwrap();
     let done = film.pixels().filter(|p| p.count() > 0).count();

@@ -2,7 +2,10 @@
 
 pub mod features;
 pub(crate) mod kernel;
+mod tiles;
 pub mod tune;
+
+pub use tiles::{Control, Piece, ThreadError};
 
 use crate::film::{Counters, Film, PixelRect, Splats, Sums, TileSums, XyzSum};
 use crate::integrator::replay::Replay;
@@ -10,9 +13,7 @@ use crate::integrator::tracer::PixelSamples;
 use crate::plan::{LaneModel, PathLoop};
 use crate::render::kernel::RenderPixels;
 use crate::scene::prepare::Prepared;
-use rayon::prelude::*;
 use std::ops::Range;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Side of a tile, pixels.
 pub const TILE: u32 = 16;
@@ -27,27 +28,6 @@ pub struct Extent {
     /// Threads; `None` is one for each core.
     pub threads: Option<usize>,
 }
-
-/// Whether to go on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Control {
-    /// Go on.
-    Continue,
-    /// Begin no further tile.
-    Stop,
-}
-
-/// A tile whose samples are rendered in rounds.
-struct UnderWay {
-    sums: TileSums,
-    counters: Counters,
-    finished: bool,
-}
-
-/// No thread pool could be had.
-#[derive(Debug, thiserror::Error)]
-#[error("cannot start the threads of the render: {0}")]
-pub struct ThreadError(#[from] rayon::ThreadPoolBuildError);
 
 impl Prepared {
     /// The whole film at the scene's own number of samples.
@@ -138,72 +118,5 @@ impl Prepared {
             (PathLoop::Scalar, None) => kernel.render_scalar,
             (PathLoop::Scalar, Some(_)) => kernel.render_reused.expect("the plan knows which kernels share paths"),
         }
-    }
-
-    /// Renders `extent` onto a new film. `on_tile` hears what a finished tile took.
-    pub fn render(
-        &self,
-        extent: &Extent,
-        on_tile: &(dyn Fn(&Counters) -> Control + Sync),
-    ) -> Result<Film, ThreadError> {
-        let mut film = self.film();
-        self.render_onto(&mut film, extent, on_tile)?;
-        Ok(film)
-    }
-
-    /// Adds `extent` to a film of the scene's size. Samples given in ascending ranges leave the same bytes as one
-    /// range. A tile is added whole or not at all.
-    pub fn render_onto(
-        &self,
-        film: &mut Film,
-        extent: &Extent,
-        on_tile: &(dyn Fn(&Counters) -> Control + Sync),
-    ) -> Result<(), ThreadError> {
-        let tiles = extent.rect.tiles(TILE).into_iter().map(|tile| (tile, extent.samples.clone()));
-        self.render_tiles_onto(film, &tiles.collect::<Vec<_>>(), extent.threads, on_tile)
-    }
-
-    /// As [`Prepared::render_onto`], with samples for each tile.
-    pub fn render_tiles_onto(
-        &self,
-        film: &mut Film,
-        tiles: &[(PixelRect, Range<u32>)],
-        threads: Option<usize>,
-        on_tile: &(dyn Fn(&Counters) -> Control + Sync),
-    ) -> Result<(), ThreadError> {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build()?;
-        let stopped = AtomicBool::new(false);
-        let begin = |(tile, samples): &(PixelRect, Range<u32>)| UnderWay {
-            sums: film.tile(*tile),
-            counters: Counters::default(),
-            finished: samples.is_empty(),
-        };
-        let mut under_way: Vec<UnderWay> = tiles.iter().map(begin).collect();
-        let of_tiles: Vec<_> = tiles.iter().map(|(_, samples)| samples.clone()).collect();
-        let whole = self.whole_rect();
-        for round in self.light_rounds(&of_tiles) {
-            if stopped.load(Ordering::Relaxed) {
-                break;
-            }
-            let splats = pool.install(|| self.splats(round.clone(), whole));
-            let advance = |((tile, samples), under_way): (&(PixelRect, Range<u32>), &mut UnderWay)| {
-                let own = samples.start.max(round.start)..samples.end.min(round.end);
-                if under_way.finished || own.is_empty() || stopped.load(Ordering::Relaxed) {
-                    return;
-                }
-                let counters = self.render_tile(*tile, own, &splats, &mut under_way.sums);
-                under_way.counters.merge(&counters);
-                under_way.finished = samples.end <= round.end;
-                if under_way.finished && on_tile(&under_way.counters) == Control::Stop {
-                    stopped.store(true, Ordering::Relaxed);
-                }
-            };
-            pool.install(|| tiles.par_iter().zip(&mut under_way).for_each(advance));
-        }
-        for ((tile, _), done) in tiles.iter().zip(under_way).filter(|(_, under_way)| under_way.finished) {
-            film.put(*tile, &done.sums);
-            film.counters.merge(&done.counters);
-        }
-        Ok(())
     }
 }

@@ -271,7 +271,7 @@ impl Paint<'_> {
         let start = Instant::now();
         let paths = |progress: &Progress| progress.canvas.with_film(|film| film.counters.paths);
         let before = paths(progress);
-        progress.canvas.advance(self.prepared, &target, Some(self.threads()), &|_, _, _| {
+        progress.canvas.advance(self.prepared, &target, Some(self.threads()), &|_| {
             let wish = self.live().wish();
             if wish.stage == self.stage && !wish.paused { Control::Continue } else { Control::Stop }
         })?;
