@@ -109,7 +109,8 @@ fn threads_stages_and_replays_give_the_same_bytes() {
             let mut sums = [[0.0; 3]; 4];
             for sample in 0..8 {
                 let replay = prepared.replay(x, y, sample);
-                (0..3).for_each(|c| sums[sample as usize % 4][c] += replay.xyz[c]);
+                let of_light_paths = replay.light_paths_xyz.unwrap_or_default();
+                (0..3).for_each(|c| sums[sample as usize % 4][c] += replay.xyz[c] + of_light_paths[c]);
                 assert!(!replay.events.is_empty());
                 // What the path found adds up to what it brings, but for rounding.
                 let light = |event: &Event| if let Event::Light { luminance, .. } = event { *luminance } else { 0.0 };

@@ -200,9 +200,10 @@ fn a_room_of_constant_radiance_stays_one_with_directions_toward_casters() {
     }
 }
 
-/// A floor under a sky with a lamp, and a mirror ball that throws the lamp's light on it.
+/// A floor under a sky with a lamp, and a mirror ball that throws the lamp's light on it. Camera paths have to find it.
 fn floor() -> Prepared {
-    let json = r#"{"etalon": 1, "film": {"width": 48, "height": 48}, "integrator": {"spp": 256, "replicates": 16},
+    let json = r#"{"etalon": 1, "film": {"width": 48, "height": 48},
+        "integrator": {"spp": 256, "replicates": 16, "light_tracing": "never"},
         "camera": {"type": "perspective", "position_m": [0, 3, 6], "look_at_m": [0, -0.5, 0], "vertical_fov_deg": 30},
         "objects": [
             {"shape": {"type": "disk", "center_m": [0, -1, 0], "normal": [0, 1, 0], "radius_m": 30},
@@ -240,7 +241,8 @@ fn lamps_in_a_mirror_ball_are_aimed_at_and_that_leaves_less_noise() {
     assert!(aimed < 0.5 * alone, "{aimed} of {alone}");
 }
 
-/// A room with a lamp under its ceiling, which is lit from the floor, not least where a ball of glass throws light on it, and through the ball.
+/// A room with a lamp under its ceiling, which is lit from the floor, not least where a ball of glass throws light on it, and through the ball. Camera paths have
+/// to find it.
 fn vault() -> Prepared {
     let walls = [
         ("[-1, -1, -1]", "[2, 0, 0]", "[0, 0, 4]"),
@@ -256,7 +258,8 @@ fn vault() -> Prepared {
         )
     });
     let json = format!(
-        r#"{{"etalon": 1, "film": {{"width": 32, "height": 32}}, "integrator": {{"spp": 256, "replicates": 16}},
+        r#"{{"etalon": 1, "film": {{"width": 32, "height": 32}},
+            "integrator": {{"spp": 256, "replicates": 16, "light_tracing": "never"}},
             "camera": {{"type": "perspective", "position_m": [0, 0, 3.5], "look_at_m": [0, 0.3, 0], "vertical_fov_deg": 38}},
             "objects": [{},
                 {{"shape": {{"type": "sphere", "center_m": [0.4, -0.6, 0.2], "radius_m": 0.4}},
