@@ -191,6 +191,24 @@ impl Geometry {
         instance.placement_at(time).vector(instance.geometry().placed_vector(inner, vector, time))
     }
 
+    /// A point of a surface, carried as [`Geometry::placed_normal`] carries normals. [`Geometry::local_point`] carries it back.
+    pub fn placed_point(&self, surface: SurfaceId, point: Vec3<f64>, time: f64) -> Vec3<f64> {
+        let Some((_, instance)) = self.instance_of(surface).filter(|_| surface.instance > 0) else { return point };
+        let inner = SurfaceId { instance: surface.instance - instance.first, ..surface };
+        instance.placement_at(time).point(instance.geometry().placed_point(inner, point, time))
+    }
+
+    /// The primitive of a surface, in the coordinates of the geometry that holds it.
+    pub fn primitive_of(&self, surface: SurfaceId) -> &Primitive {
+        match self.instance_of(surface).filter(|_| surface.instance > 0) {
+            None => self.primitive(surface.primitive),
+            Some((_, instance)) => {
+                let inner = SurfaceId { instance: surface.instance - instance.first, ..surface };
+                instance.geometry().primitive_of(inner)
+            }
+        }
+    }
+
     /// A point of this geometry in the coordinates of the geometry that holds the surface's primitive, at a time.
     #[inline]
     pub fn local_point(&self, surface: SurfaceId, point: Vec3<f64>, time: f64) -> Vec3<f64> {

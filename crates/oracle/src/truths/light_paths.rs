@@ -5,6 +5,7 @@ use super::{
     scene::{Scene, black, block, glass, lambert, level_square, mirror, parallelogram, shown, sphere},
 };
 use crate::laws::fresnel_exact;
+use crate::vector::{add, dot, normalize, scale};
 use serde_json::json;
 use std::f64::consts::PI;
 
@@ -18,6 +19,7 @@ fn half_view() -> f64 {
 pub(super) fn truths() -> Vec<Truth> {
     WAYS.into_iter()
         .flat_map(|way| [by_a_mirror(way, false), by_a_mirror(way, true), through_a_plate(way), in_glass(way)])
+        .chain([by_a_bent_mirror()])
         .collect()
 }
 
@@ -74,6 +76,45 @@ fn by_a_mirror(way: &'static str, has_area: bool) -> Truth {
     .or_else("the mirror shows nothing", 0.0)
     .or_else("the mirror loses nothing", shown(mean))
     .or_else("light counted twice", shown(2.0 * REFLECTANCE * mean))
+    .sees(0.01)
+}
+
+/// The sun, shaded by a sheet, lights the floor by way of an upright mirror whose shading normals lean.
+fn by_a_bent_mirror() -> Truth {
+    const REFLECTANCE: f64 = 0.9;
+    let (lean, irradiance) = (20.0_f64.to_radians(), 2.0);
+    let to_floor = normalize([1.1, 0.0, -0.5]);
+    let normal = [lean.cos(), 0.0, lean.sin()];
+    let sun = add(scale(2.0 * dot(normal, to_floor), normal), scale(-1.0, to_floor));
+    let arriving = REFLECTANCE * irradiance * -to_floor[2];
+    let scene = floor("always")
+        .thing(json!({
+            "shape": {
+                "type": "mesh",
+                "vertices_m": [[-0.6, -0.3, 0.3], [-0.6, 0.3, 0.3], [-0.6, 0.3, 0.7], [-0.6, -0.3, 0.7]],
+                "triangles": [[0, 1, 2], [0, 2, 3]],
+                "normals": [normal, normal, normal, normal],
+            },
+            "material": mirror(REFLECTANCE),
+        }))
+        .object(parallelogram([0.5, -0.3, 0.6], [0.6, 0.0, 0.0], [0.0, 0.6, 0.0]), black())
+        .directional_light(scale(-1.0, sun), irradiance)
+        .spp(256);
+    Truth::new(
+        "sun-by-a-bent-mirror-with-light-paths-always",
+        &scene,
+        shown(arriving),
+        "(ρ/π) R E cos θ, θ at the floor",
+    )
+    .because(
+        "The floor sees the radiance of the sun, times R, in the direction that is mirrored about the shading normal. A mirror image keeps solid          angles, so E is the same, whatever the angle at which the sun meets the mirror itself.",
+    )
+    .confirmed("the sun's elevation less twice the lean", 1e-12, move || {
+        let elevation = sun[2].atan2(sun[0]);
+        shown(REFLECTANCE * irradiance * (elevation - 2.0 * lean).sin())
+    })
+    .or_else("shading normals ignored", 0.0)
+    .or_else("power left as it arrives on the mirror", shown(arriving * sun[0] / to_floor[0]))
     .sees(0.01)
 }
 

@@ -333,6 +333,23 @@ impl Bsdf {
         }
     }
 
+    /// [`Bsdf::sample`] backward, at a smooth surface. For light that comes from `wi` it draws a direction to which the surface shows that light,
+    /// as `wi` of the sample, and what power is to be multiplied by beside the sample's weight. `u_way` decides where several ways lead there.
+    pub(crate) fn sample_viewer<const N: usize>(
+        &self,
+        lambda_nm: &Lanes<f64, N>,
+        at: &Shading<'_>,
+        wi: Vec3<f64>,
+        u: [f64; 3],
+        u_way: [f64; 2],
+    ) -> Option<(BsdfSample<N>, f64)> {
+        match at.is_bent() {
+            true => shading::sample_viewer(self, lambda_nm, at, wi, u, u_way),
+            // Reflected or refracted backward, light goes the same way.
+            false => self.sample(lambda_nm, at, wi, u).map(|sample| (sample, 1.0)),
+        }
+    }
+
     /// [`Bsdf::sample`] with `n` for the only normal.
     #[inline]
     fn sample_around<const N: usize>(

@@ -16,7 +16,8 @@
 //! Mirroring keeps solid angles, so a surface scatters as much as its BSDF does: a white furnace stays white. Light still
 //! ends where the triangle turns away from a lamp, not where the shading normal does; finer meshes close the gap. As with
 //! every shading normal, scattering is not reciprocal (Veach 1996, *Non-symmetric Scattering in Light Transport
-//! Algorithms*): paths from the camera are estimated rightly, paths from lights would need a correction.
+//! Algorithms*). Paths from the camera are estimated rightly. Paths from lights ask [`eval`] for the camera's own answer, and at smooth surfaces
+//! [`sample_viewer`] for the way back.
 
 use super::{Bsdf, BsdfSample};
 use crate::media::Interface;
@@ -199,4 +200,42 @@ pub(super) fn sample<const N: usize>(
         return BsdfSample::scattered(next.wi, f_cos, density, next.eta);
     }
     Some(next)
+}
+
+/// [`Bsdf::sample_viewer`] around a bent normal.
+///
+/// [`sample`] takes a viewer to a direction in three steps: rule 3, reflection or refraction about the shading normal n, rule 4. Each is undone, from
+/// the last. Mirror images may have come from either of two directions; one is drawn, and counts for both. All steps but refraction keep solid
+/// angles, and refraction changes them by n·ω and n². Power is measured by the triangle's own normal g (Veach 1997, §5.3). So it is multiplied by
+/// |n·ωᵢ| |g·ωₒ| / (|n·ωₒ| |g·ωᵢ|), with n·ω of the directions as the BSDF takes them.
+pub(super) fn sample_viewer<const N: usize>(
+    bsdf: &Bsdf,
+    lambda_nm: &Lanes<f64, N>,
+    at: &Shading<'_>,
+    wi: Vec3<f64>,
+    u: [f64; 3],
+    [u_meant, u_viewer]: [f64; 2],
+) -> Option<(BsdfSample<N>, f64)> {
+    let n = at.shading_normal();
+    let meant = [wi, at.mirrored(wi)].map(|direction| at.belongs(direction, wi).then_some(direction));
+    let (meant, ways) = one_of(meant, u_meant)?;
+    let mut seen = bsdf.sample_around(lambda_nm, n, at, meant, u)?;
+    debug_assert!(matches!(seen.density, Density::Delta), "smooth surfaces have one way back");
+    let viewer = seen.wi;
+    let below = (viewer - n * (2.0 * n.dot(viewer))).renormalized();
+    let viewers = [viewer, below].map(|wo| at.belongs(viewer, wo).then_some(wo));
+    let (wo, more_ways) = one_of(viewers, u_viewer)?;
+    seen.wi = wo;
+    let [g_i, g_o] = [wi, wo].map(|direction| at.normal.dot(direction).abs());
+    let [n_i, n_o] = [meant, viewer].map(|direction| n.dot(direction).abs());
+    let power = ways * more_ways * (n_i * g_o) / (n_o * g_i);
+    power.is_finite().then_some((seen, power))
+}
+
+/// One of those that there are, and how many there are.
+fn one_of(directions: [Option<Vec3<f64>>; 2], u: f64) -> Option<(Vec3<f64>, f64)> {
+    match directions {
+        [Some(first), Some(second)] => Some((if u < 0.5 { first } else { second }, 2.0)),
+        [only, None] | [None, only] => Some((only?, 1.0)),
+    }
 }

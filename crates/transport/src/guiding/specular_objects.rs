@@ -1,18 +1,21 @@
 //! Objects that light paths begin at: see [`light_tracing`](crate::integrator::light_tracing).
 
 use crate::bsdf::{Bsdf, Properties};
-use crate::surface::shading_geometry::Coordinates;
+use crate::frame::Affine;
 use crate::surface::{ObjectSurface, Surfaces};
-use etalon_geometry::{Geometry, PrimitiveId};
+use etalon_geometry::{Geometry, PrimitiveId, SurfaceId};
 use etalon_optics::Vec3;
+
+/// Primitives of specular objects, each as often as it is placed. Scenes with more have no light paths: a list of them would fill the memory.
+const MOST_PRIMITIVES: usize = 1 << 24;
 
 /// Smooth mirrors, metals, glass and panes that throw light on a scene, and how it is followed.
 #[derive(Clone, Debug)]
 pub(crate) struct SpecularObjects {
     /// Of each object of the scene.
     pub(crate) is_one: Vec<bool>,
-    /// Their shapes, and the area of each with all before it.
-    primitives: Vec<PrimitiveId>,
+    /// Their primitives wherever they are placed, and the area of each with all before it.
+    primitives: Vec<SurfaceId>,
     area_until: Vec<f64>,
     /// Whether light of lamps without area is found too. Then specular connections do not look for it.
     pub finds_sources: bool,
@@ -20,22 +23,34 @@ pub(crate) struct SpecularObjects {
     pub paths_per_pixel: f64,
 }
 
+/// A primitive that is placed somewhere.
+struct Placed {
+    object: u32,
+    surface: SurfaceId,
+    /// `None` where it is not known: of balls, disks and cylinders that are stretched.
+    area: Option<f64>,
+}
+
 impl SpecularObjects {
     /// Those of a scene.
     pub(crate) fn new(surfaces: &Surfaces, geometry: &Geometry) -> Option<Self> {
-        let mut is_one = vec![false; surfaces.objects.len()];
-        let (mut primitives, mut area_until, mut area) = (Vec::new(), Vec::new(), 0.0);
-        // The scene's own: where instances place others, their areas are not known.
-        for (number, &object) in surfaces.object_of.first().into_iter().flatten().enumerate() {
-            let Some(of_object) = surfaces.objects.get(object as usize) else { continue };
-            let primitive = PrimitiveId(number as u32);
-            if let (true, Some(shape)) = (is_reciprocal(surfaces, of_object), geometry.primitive(primitive).sampler()) {
-                is_one[object as usize] = true;
-                area += shape.area();
-                primitives.push(primitive);
-                area_until.push(area);
-            }
+        let smooth = |object: &ObjectSurface| is_smooth(surfaces, object);
+        let mut is_one: Vec<bool> = surfaces.objects.iter().map(smooth).collect();
+        let mut all = Vec::new();
+        add_placed(&mut all, (surfaces, &is_one), geometry, 0, &Affine::IDENTITY);
+        for placed in all.iter().filter(|placed| placed.area.is_none()) {
+            is_one[placed.object as usize] = false;
         }
+        if all.len() > MOST_PRIMITIVES {
+            return None;
+        }
+        all.retain(|placed| is_one[placed.object as usize]);
+        let mut area = 0.0;
+        let area_until = all.iter().filter_map(|placed| placed.area).map(|own| {
+            area += own;
+            area
+        });
+        let (area_until, primitives) = (area_until.collect(), all.iter().map(|placed| placed.surface).collect());
         let finds_sources = surfaces.other_properties(&is_one).all(|of| !of.has_delta());
         (area > 0.0).then_some(Self { is_one, primitives, area_until, finds_sources, paths_per_pixel: 1.0 })
     }
@@ -52,22 +67,49 @@ impl SpecularObjects {
     }
 
     /// A point of the specular objects for numbers in [0, 1); all are equally likely.
-    pub(crate) fn point(&self, geometry: &Geometry, u: f64, on_shape: [f64; 2]) -> Option<(PrimitiveId, Vec3<f64>)> {
+    pub(crate) fn point(&self, geometry: &Geometry, u: f64, on_shape: [f64; 2]) -> Option<(SurfaceId, Vec3<f64>)> {
         let at = u * self.area();
         let index = self.area_until.partition_point(|&until| until <= at).min(self.primitives.len() - 1);
-        let primitive = self.primitives[index];
-        Some((primitive, geometry.primitive(primitive).sampler()?.point(on_shape)))
+        let surface = self.primitives[index];
+        let local = geometry.primitive_of(surface).sampler()?.point(on_shape);
+        Some((surface, geometry.placed_point(surface, local, 0.0)))
     }
 }
 
-/// Whether a walk along the light may go through an object as a walk against it does.
-fn is_reciprocal(surfaces: &Surfaces, object: &ObjectSurface) -> bool {
+/// Adds the primitives of objects of which `is_one` says so, of a geometry that is placed by `to_frame` and whose own primitives have the
+/// instance number `number`.
+fn add_placed(
+    all: &mut Vec<Placed>,
+    (surfaces, is_one): (&Surfaces, &[bool]),
+    geometry: &Geometry,
+    number: u32,
+    to_frame: &Affine,
+) {
+    for (i, &object) in surfaces.object_of[geometry.label() as usize].iter().enumerate() {
+        if all.len() > MOST_PRIMITIVES {
+            return;
+        }
+        if is_one.get(object as usize) != Some(&true) {
+            continue;
+        }
+        let surface = SurfaceId { instance: number, primitive: PrimitiveId(i as u32) };
+        let shape = to_frame.shape(geometry.primitive(surface.primitive)).ok();
+        let area = shape.and_then(|shape| shape.sampler()).map(|sampler| sampler.area());
+        all.push(Placed { object, surface, area });
+    }
+    for (inner, instance) in geometry.instances() {
+        let to_frame = to_frame.after(instance.placement());
+        add_placed(all, (surfaces, is_one), instance.geometry(), number + inner, &to_frame);
+    }
+}
+
+/// Whether light goes on from an object in one direction or two, and none begins there.
+fn is_smooth(surfaces: &Surfaces, object: &ObjectSurface) -> bool {
     let smooth = matches!(
         surfaces.bsdfs[object.material].untinted(),
         Bsdf::Mirror(_) | Bsdf::Conductor(_) | Bsdf::Dielectric(_) | Bsdf::ThinDielectric(_)
     );
-    let bent = matches!(&object.coordinates, Coordinates::Mesh(mesh) if !mesh.mesh.normals.is_empty());
-    smooth && !bent && object.relief.is_none() && object.emission.is_none()
+    smooth && object.emission.is_none()
 }
 
 impl Surfaces {

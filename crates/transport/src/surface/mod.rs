@@ -309,6 +309,17 @@ impl Scattering<'_> {
         self.bsdf.mueller(lambda_nm, &self.at, wo, wi, lobe)
     }
 
+    /// See [`Bsdf::sample_viewer`].
+    pub(crate) fn sample_viewer<const N: usize>(
+        &self,
+        lambda_nm: &Lanes<f64, N>,
+        wi: Vec3<f64>,
+        u: [f64; 3],
+        u_way: [f64; 2],
+    ) -> Option<(BsdfSample<N>, f64)> {
+        self.bsdf.sample_viewer(lambda_nm, &self.at, wi, u, u_way)
+    }
+
     /// See [`Bsdf::sample`].
     #[inline]
     pub(crate) fn sample<const N: usize>(

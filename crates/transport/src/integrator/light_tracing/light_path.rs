@@ -11,6 +11,7 @@ use crate::mis::Density;
 use crate::polarisation::Polarisation;
 use crate::sampler::Sampler;
 use crate::scene::interaction::SurfaceInteraction;
+use crate::scene::shading_tables::BsdfKind;
 use etalon_geometry::{Hit, Ray, SurfaceId};
 use etalon_optics::{Lanes, Vec3};
 
@@ -70,7 +71,8 @@ pub(crate) fn trace_light_path<'a, M: WavelengthModel<N>, P: Polarisation<N>, co
             return;
         }
         let [u_lobe, u1, u2, u_roulette] = sampler.vertex_set(path.vertex, 0);
-        let Some(direction) = path.sample_direction(world, &vertex, [u_lobe, u1, u2], &mut ()) else { return };
+        let u = [u_lobe, u1, u2];
+        let Some(direction) = sample_direction(tracer, &mut path, &vertex, (is_specular, u), &sampler) else { return };
         let Some(wi) = step(tracer, &mut path, &vertex, direction, (is_specular, u_lobe)) else { return };
         if !path.survives(world, 1.0, u_roulette, &mut ()) {
             return;
@@ -96,8 +98,7 @@ fn begin<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
     let [u1, u2, u_place, u_light] = sampler.set(0);
     // The paths of a sample are spread evenly over the area.
     let u_place = (number as f64 + u_place) / of as f64;
-    let (primitive, position) = specular_objects.point(world.geometry, u_place, [u1, u2])?;
-    let surface = SurfaceId { instance: 0, primitive };
+    let (surface, position) = specular_objects.point(world.geometry, u_place, [u1, u2])?;
     let hit = Hit { t: 0.0, surface, uv: world.geometry.parameters(surface, position, 0.0) };
     let point = world.geometry.surface(&Ray::free(position, Vec3::new(0.0, 0.0, 1.0)), &hit);
 
@@ -121,6 +122,25 @@ fn begin<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
     let power = path.coloured(white, colour) * (scale * cos * specular_objects.area() / (density * draw.probability));
     vertex.prepare_scattering(world);
     Some(Beginning { vertex, power })
+}
+
+/// Draws where light goes on to.
+fn sample_direction<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
+    tracer: &Tracer<'a>,
+    path: &mut Path<'a, M, P, N>,
+    vertex: &SurfaceInteraction<'a>,
+    (is_specular, u): (bool, [f64; 3]),
+    sampler: &Sampler,
+) -> Option<Direction<N>> {
+    if !is_specular || vertex.kind != BsdfKind::General {
+        return path.sample_direction(&tracer.world, vertex, u, &mut ());
+    }
+    // Around a bent normal, the way back is another.
+    let [u_meant, _, _, u_viewer] = sampler.vertex_set(path.vertex, 1);
+    let lambda_nm = &path.wavelengths.lambda_nm;
+    let (mut sample, power) = vertex.scattering().sample_viewer(lambda_nm, vertex.wo, u, [u_meant, u_viewer])?;
+    sample.weight *= power;
+    Some(Direction::General { sample, guiding: 1.0 })
 }
 
 /// Takes a step along the light: `None` where light paths do not go on.

@@ -19,8 +19,8 @@
 //!
 //! **Reciprocity.** Where a surface scatters, both directions are known, and the camera's own formula is used: shading normals need no correction.
 //! Smooth surfaces reflect and transmit forward with the same probabilities as backward. But transmission scales radiance by n², and a walk along the
-//! light carries power, which it does not scale (Veach 1997, §5.2): the factors η² of the walk are taken back. No mesh with normals is one, and
-//! light paths end where such a mesh mirrors or refracts.
+//! light carries power, which it does not scale (Veach 1997, §5.2): the factors η² of the walk are taken back. Around a shading normal the way back is
+//! another, and power changes on it ([`Bsdf::sample_viewer`](crate::bsdf::Bsdf::sample_viewer)).
 
 mod light_path;
 mod splats;
@@ -84,14 +84,14 @@ pub(crate) fn find_specular_objects(prepared: &Prepared) -> Result<SpecularObjec
         return Err(reason);
     }
     let mut specular_objects = SpecularObjects::new(&prepared.surfaces, &prepared.geometry)
-        .ok_or("there is no smooth mirror, metal or glass without shading normals that stands where it is defined")?;
+        .ok_or("there is no smooth mirror, metal or glass that keeps its shape where it is placed")?;
     // What shadow rays through glass find from what the camera sees is found by light paths alone.
     let all_glass = || prepared.surfaces.other_properties(&specular_objects.is_one).all(|of| !of.delta_transmission);
     // A study that leaves out such light of lamps without area finds none of it.
     specular_objects.finds_sources &= !plan.leaves_out(EffectName::SpecularConnections);
     match prepared.refracting_bodies.is_none() || all_glass() {
         true => Ok(specular_objects),
-        false => Err("shadow rays go through smooth glass that emits light, is an instance or has shading normals"),
+        false => Err("shadow rays go through smooth glass that emits light or is stretched as an instance"),
     }
 }
 
