@@ -19,12 +19,10 @@ const LIGHT_SAMPLES: u32 = 8;
 const PER_PIXEL: [f64; 7] = [0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0];
 /// What light paths must leave of variance times time.
 const WORTH_IT: f64 = 0.8;
-/// Where camera paths find less of the light than this, their variance says nothing: what bears it was missed.
+/// Where camera paths find less of the light than this, what bears the rest was too rare for the trial.
 const FOUND: f64 = 0.5;
 /// Connections of about equal weight from which something is known of the light that they bring.
 const FEWEST_CONNECTIONS: f64 = 64.0;
-/// The part of all light that must have been missed, for that to count.
-const OF_ALL: f64 = 0.02;
 
 /// What the camera paths of some pixels came to: the mean and the mean square of each pixel's samples, and the rays of all.
 pub(crate) struct CameraTrial {
@@ -109,7 +107,9 @@ pub(crate) fn light_paths_per_pixel(
         return None;
     }
     let all: Vec<f64> = means.iter().zip(&rest.moments).map(|(of_light, (of_rest, _))| of_light + of_rest).collect();
-    let scales: Vec<f64> = tried.levels(&all).into_iter().map(|(_, scale)| scale).collect();
+    // Light that is thrown on a small place is brighter than all around.
+    let scale = |((_, scale), own): ((f64, f64), &f64)| scale.max(own * own);
+    let scales: Vec<f64> = tried.levels(&all).into_iter().zip(&all).map(scale).collect();
     let cost_of = |camera: &CameraTrial| {
         let mut cost = Cost { rays: camera.rays as f64 / f64::from(SAMPLES), ..Cost::default() };
         for ((mean, square), scale) in camera.moments.iter().zip(&scales) {
@@ -127,17 +127,27 @@ pub(crate) fn light_paths_per_pixel(
         }
     }
     of_light.rays = LIGHT_RAY * cells as f64 * splats.rays as f64 / splats.paths as f64;
-    Some(best(cost_of(whole), cost_of(rest), of_light))
+    let (mut whole, rest) = (cost_of(whole), cost_of(rest));
+    let missed = of_light.light - (whole.light - rest.light);
+    if missed > (1.0 - FOUND) * of_light.light {
+        let share = missed / of_light.light;
+        whole.variance += least_variance(means.iter().map(|mean| share * mean).zip(scales.iter().copied()));
+    }
+    Some(best(whole, rest, of_light))
+}
+
+/// The least variance of light, of these means over the pixels that were tried, which no camera path has met: of all that were tried at most one
+/// should have. So one in that many brings that many times the mean.
+fn least_variance(of_pixels: impl Iterator<Item = (f64, f64)> + Clone) -> f64 {
+    let met = of_pixels.clone().map(|(mean, _)| mean).sum::<f64>() * f64::from(SAMPLES);
+    of_pixels.filter(|(_, scale)| *scale > 0.0).map(|(mean, scale)| mean * met / scale).sum()
 }
 
 fn best(whole: Cost, rest: Cost, of_light: Cost) -> LightTrial {
     let product =
         |per_pixel: f64| (rest.variance + of_light.variance / per_pixel) * (rest.rays + of_light.rays * per_pixel);
     let per_pixel = PER_PIXEL.into_iter().min_by(|a, b| product(*a).total_cmp(&product(*b))).unwrap_or(1.0);
-    let all = rest.light + of_light.light;
-    let missed = whole.light - rest.light < FOUND * of_light.light && of_light.light > OF_ALL * all;
-    let is_worth_it = missed || product(per_pixel) < WORTH_IT * whole.variance * whole.rays;
-    LightTrial { per_pixel, is_worth_it }
+    LightTrial { per_pixel, is_worth_it: product(per_pixel) < WORTH_IT * whole.variance * whole.rays }
 }
 
 #[cfg(test)]
@@ -146,20 +156,20 @@ mod tests {
 
     #[test]
     fn light_is_followed_from_lamps_where_that_leaves_less_noise_for_the_time() {
-        let cost = |light, variance, rays| Cost { light, variance, rays };
-        let whole = cost(100.0, 50.0, 1000.0);
-        let rest = cost(90.0, 1.0, 1000.0);
+        let cost = |variance, rays| Cost { light: 0.0, variance, rays };
+        let whole = cost(50.0, 1000.0);
+        let rest = cost(1.0, 1000.0);
         let chosen = |whole, rest, of_light| {
             let found = best(whole, rest, of_light);
             found.is_worth_it.then_some(found.per_pixel)
         };
         // As many as balance the two kinds.
-        assert_eq!(chosen(whole, rest, cost(10.0, 1.0, 1000.0)), Some(1.0));
-        assert_eq!(chosen(whole, rest, cost(10.0, 4.0, 1000.0)), Some(2.0));
+        assert_eq!(chosen(whole, rest, cost(1.0, 1000.0)), Some(1.0));
+        assert_eq!(chosen(whole, rest, cost(4.0, 1000.0)), Some(2.0));
         // More noise than it takes away.
-        assert_eq!(chosen(whole, cost(90.0, 45.0, 1000.0), cost(10.0, 30.0, 4000.0)), None);
-        // Camera paths have missed it, and so know nothing of its variance.
-        assert_eq!(chosen(cost(91.0, 1.0, 1000.0), rest, cost(10.0, 1.0, 1000.0)), Some(1.0));
-        assert_eq!(chosen(cost(100.0, 1.0, 1000.0), cost(99.99, 1.0, 1000.0), cost(0.5, 1.0, 1000.0)), None);
+        assert_eq!(chosen(whole, cost(45.0, 1000.0), cost(30.0, 4000.0)), None);
+        // 100 pixels, and a hundredth of the light in one of them: one path of 1600 brings 1600 times the mean of 0.01.
+        let missed = |pixel: u32| (if pixel == 0 { 1.0 } else { 0.0 }, 1.0);
+        assert_eq!(least_variance((0..100).map(missed)), 16.0);
     }
 }
