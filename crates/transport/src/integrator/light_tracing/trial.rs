@@ -60,12 +60,34 @@ fn level(xyz: [f64; 3]) -> f64 {
     xyz.iter().sum::<f64>() / 3.0
 }
 
-/// What a sample of the picture comes to, for each pixel that was tried: mean, variance against the level of each place, and rays.
+/// What a sample of the picture comes to, for each pixel that was tried: mean, variances against two [scales](Scales), and rays.
 #[derive(Clone, Copy, Debug, Default)]
 struct Cost {
     light: f64,
-    variance: f64,
+    variances: [f64; 2],
     rays: f64,
+}
+
+/// What the variance of each pixel counts against: the square of the level about it, as it is seen, and that of the whole picture, as its error is
+/// stated.
+struct Scales {
+    about: Vec<f64>,
+    of_all: f64,
+}
+
+impl Scales {
+    fn new(tried: &Tried, means: &[f64]) -> Self {
+        let mean = means.iter().sum::<f64>() / means.len() as f64;
+        Self { about: tried.levels(means).into_iter().map(|(_, scale)| scale).collect(), of_all: mean * mean }
+    }
+
+    /// The sums of the variances of all pixels.
+    fn sums(&self, variances: impl Iterator<Item = f64>) -> [f64; 2] {
+        let against = |variance: f64, scale: f64| if scale > 0.0 { variance / scale } else { 0.0 };
+        variances.zip(&self.about).fold([0.0; 2], |sums, (variance, about)| {
+            [sums[0] + against(variance, *about), sums[1] + against(variance, self.of_all)]
+        })
+    }
 }
 
 /// What a trial found.
@@ -107,47 +129,43 @@ pub(crate) fn light_paths_per_pixel(
         return None;
     }
     let all: Vec<f64> = means.iter().zip(&rest.moments).map(|(of_light, (of_rest, _))| of_light + of_rest).collect();
-    // Light that is thrown on a small place is brighter than all around.
-    let scale = |((_, scale), own): ((f64, f64), &f64)| scale.max(own * own);
-    let scales: Vec<f64> = tried.levels(&all).into_iter().zip(&all).map(scale).collect();
-    let cost_of = |camera: &CameraTrial| {
-        let mut cost = Cost { rays: camera.rays as f64 / f64::from(SAMPLES), ..Cost::default() };
-        for ((mean, square), scale) in camera.moments.iter().zip(&scales) {
-            cost.light += mean;
-            if *scale > 0.0 {
-                cost.variance += (square - mean * mean).max(0.0) / scale;
-            }
-        }
-        cost
+    let scales = Scales::new(&tried, &all);
+    let cost_of = |camera: &CameraTrial| Cost {
+        light: camera.moments.iter().map(|(mean, _)| mean).sum(),
+        variances: scales.sums(camera.moments.iter().map(|(mean, square)| (square - mean * mean).max(0.0))),
+        rays: camera.rays as f64 / f64::from(SAMPLES),
     };
-    let mut of_light = Cost { light: means.iter().sum(), ..Cost::default() };
-    for (variance, scale) in variances.iter().zip(&scales) {
-        if *scale > 0.0 {
-            of_light.variance += variance / scale;
-        }
-    }
-    of_light.rays = LIGHT_RAY * cells as f64 * splats.rays as f64 / splats.paths as f64;
+    let of_light = Cost {
+        light: means.iter().sum(),
+        variances: scales.sums(variances.into_iter()),
+        rays: LIGHT_RAY * cells as f64 * splats.rays as f64 / splats.paths as f64,
+    };
     let (mut whole, rest) = (cost_of(whole), cost_of(rest));
     let missed = of_light.light - (whole.light - rest.light);
     if missed > (1.0 - FOUND) * of_light.light {
         let share = missed / of_light.light;
-        whole.variance += least_variance(means.iter().map(|mean| share * mean).zip(scales.iter().copied()));
+        let least = scales.sums(least_variances(means.iter().map(|mean| share * mean)));
+        whole.variances = [0, 1].map(|scale| whole.variances[scale] + least[scale]);
     }
     Some(best(whole, rest, of_light))
 }
 
-/// The least variance of light, of these means over the pixels that were tried, which no camera path has met: of all that were tried at most one
+/// The least variances of light, of these means over the pixels that were tried, which no camera path has met: of all that were tried at most one
 /// should have. So one in that many brings that many times the mean.
-fn least_variance(of_pixels: impl Iterator<Item = (f64, f64)> + Clone) -> f64 {
-    let met = of_pixels.clone().map(|(mean, _)| mean).sum::<f64>() * f64::from(SAMPLES);
-    of_pixels.filter(|(_, scale)| *scale > 0.0).map(|(mean, scale)| mean * met / scale).sum()
+fn least_variances(means: impl Iterator<Item = f64> + Clone) -> impl Iterator<Item = f64> {
+    let met = means.clone().sum::<f64>() * f64::from(SAMPLES);
+    means.map(move |mean| mean * met)
 }
 
+/// Both scales weigh alike: what decides is the geometric mean of both products of variance and time.
 fn best(whole: Cost, rest: Cost, of_light: Cost) -> LightTrial {
-    let product =
-        |per_pixel: f64| (rest.variance + of_light.variance / per_pixel) * (rest.rays + of_light.rays * per_pixel);
-    let per_pixel = PER_PIXEL.into_iter().min_by(|a, b| product(*a).total_cmp(&product(*b))).unwrap_or(1.0);
-    LightTrial { per_pixel, is_worth_it: product(per_pixel) < WORTH_IT * whole.variance * whole.rays }
+    let product = |variances: [f64; 2], rays: f64| (variances[0] * variances[1]).sqrt() * rays;
+    let with = |per_pixel: f64| {
+        let left = [0, 1].map(|scale| rest.variances[scale] + of_light.variances[scale] / per_pixel);
+        product(left, rest.rays + of_light.rays * per_pixel)
+    };
+    let per_pixel = PER_PIXEL.into_iter().min_by(|a, b| with(*a).total_cmp(&with(*b))).unwrap_or(1.0);
+    LightTrial { per_pixel, is_worth_it: with(per_pixel) < WORTH_IT * product(whole.variances, whole.rays) }
 }
 
 #[cfg(test)]
@@ -156,7 +174,7 @@ mod tests {
 
     #[test]
     fn light_is_followed_from_lamps_where_that_leaves_less_noise_for_the_time() {
-        let cost = |variance, rays| Cost { light: 0.0, variance, rays };
+        let cost = |variance, rays| Cost { light: 0.0, variances: [variance, 2.0 * variance], rays };
         let whole = cost(50.0, 1000.0);
         let rest = cost(1.0, 1000.0);
         let chosen = |whole, rest, of_light| {
@@ -168,8 +186,12 @@ mod tests {
         assert_eq!(chosen(whole, rest, cost(4.0, 1000.0)), Some(2.0));
         // More noise than it takes away.
         assert_eq!(chosen(whole, cost(45.0, 1000.0), cost(30.0, 4000.0)), None);
-        // 100 pixels, and a hundredth of the light in one of them: one path of 1600 brings 1600 times the mean of 0.01.
-        let missed = |pixel: u32| (if pixel == 0 { 1.0 } else { 0.0 }, 1.0);
-        assert_eq!(least_variance((0..100).map(missed)), 16.0);
+        // What is seen gains as much as what is stated loses.
+        let uneven = |variances, rays| Cost { light: 0.0, variances, rays };
+        let none = uneven([0.0; 2], 1000.0);
+        assert_eq!(chosen(uneven([2.0, 1.0], 1000.0), uneven([0.5, 4.0], 1000.0), none), None);
+        // 100 pixels, and light in one of them: one path of 1600 brings 1600 times the mean of 0.01.
+        let least = least_variances((0..100).map(|pixel| if pixel == 0 { 1.0 } else { 0.0 }));
+        assert_eq!(least.sum::<f64>(), 16.0);
     }
 }
