@@ -45,6 +45,9 @@ PICTURES = [
     Picture("double-gauss", "scenes/double-gauss.json", ["--exposure", "2", "--curve", "agx"],
             "Marbles on a table, through a double Gauss lens of 50 mm at f/2: every ray is traced through its eleven faces. Look at the lanterns far behind: the lens "
             "shows each as the image of its own pupil, round in the middle and cut off toward the corners.", error="10%", size="480x320"),
+    Picture("bench", "scenes/bench.json", ["--exposure", "0.7", "--curve", "agx"],
+            "A spectroscope on an optical bench. A lamp house, a slit, and a 60° prism of N-SF11, whose white table the light just touches. Look at the fan of "
+            "colours behind the prism, at the white light that its first face mirrors, and at the spectrum on the card. Paths from the lamp bring all three."),
     Picture("prism-in-smoke", "scenes/prism-in-smoke.json", ["--exposure", "5"],
             "A beam of white light goes through a prism in a smoky room. The spectrum stands in the air: smoke scatters each colour where the glass has "
             "sent it. The beam has no area; paths find it through the glass.", error="10%", size="480x270"),
@@ -66,6 +69,9 @@ PICTURES = [
     Picture("watch", "scenes/watch.json", ["--exposure", "0.3", "--curve", "agx"],
             "A wrist watch. The dial is brushed from the middle outward, the case around. The two bright fans of the dial stand across the lamps, as they "
             "do on real dials."),
+    Picture("diamonds", "scenes/diamonds.json", ["--exposure", "0", "--curve", "agx"],
+            "Cut diamonds on black glass: a round brilliant, an emerald cut, an oval, and small brilliants. Wide lamps make brilliance, the white light that a "
+            "stone returns. Rows of narrow lamps make fire, the pure colours at their edges. Nothing but the index of diamond colours the light.", size="480x320"),
     Picture("rosette", "scenes/rosette.json", ["--exposure", "0.6"],
             "A window without coloured glass: stacks of clear film between crossed polarisers. Only the delay of each stack, 115 nm a sheet, decides its "
             "colour. The outer ring is Michel-Lévy's chart from 1 to 24 sheets and back. The varnished floor polarises what it mirrors."),
