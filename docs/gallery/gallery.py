@@ -47,7 +47,8 @@ PICTURES = [
             "shows each as the image of its own pupil, round in the middle and cut off toward the corners.", error="10%", size="480x320"),
     Picture("bench", "scenes/bench.json", ["--exposure", "0.7", "--curve", "agx"],
             "A spectroscope on an optical bench. A lamp house, a slit, and a 60° prism of N-SF11, whose white table the light just touches. Look at the fan of "
-            "colours behind the prism, at the white light that its first face mirrors, and at the spectrum on the card. Paths from the lamp bring all three."),
+            "colours behind the prism, at the white light that its first face mirrors, and at the spectrum on the card. Paths from the lamp bring all three.",
+            size="540x320"),
     Picture("prism-in-smoke", "scenes/prism-in-smoke.json", ["--exposure", "5"],
             "A beam of white light goes through a prism in a smoky room. The spectrum stands in the air: smoke scatters each colour where the glass has "
             "sent it. The beam has no area; paths find it through the glass.", error="10%", size="480x270"),
@@ -69,7 +70,7 @@ PICTURES = [
     Picture("watch", "scenes/watch.json", ["--exposure", "0.3", "--curve", "agx"],
             "A wrist watch. The dial is brushed from the middle outward, the case around. The two bright fans of the dial stand across the lamps, as they "
             "do on real dials."),
-    Picture("diamonds", "scenes/diamonds.json", ["--exposure", "0", "--curve", "agx"],
+    Picture("diamonds", "scenes/diamonds.json", ["--exposure", "-0.5", "--curve", "agx"],
             "Cut diamonds on black glass: a round brilliant, an emerald cut, an oval, and small brilliants. Wide lamps make brilliance, the white light that a "
             "stone returns. Rows of narrow lamps make fire, the pure colours at their edges. Nothing but the index of diamond colours the light.", size="480x320"),
     Picture("rosette", "scenes/rosette.json", ["--exposure", "0.6"],

@@ -252,9 +252,9 @@ if __name__ == "__main__":
             "Written by scenes/generators/bench.py.",
         ],
         "camera": {
-            "type": "perspective", "position_m": [-0.02, 0.25, 0.46], "look_at_m": [-0.082, 0.082, -0.12], "horizontal_fov_deg": 51,
+            "type": "perspective", "position_m": [0.02, 0.235, 0.44], "look_at_m": [-0.060, 0.094, -0.12], "horizontal_fov_deg": 52,
         },
-        "film": {"width": 540, "height": 360, "filter": {"type": "gaussian", "sigma_px": 0.5}},
+        "film": {"width": 540, "height": 320, "filter": {"type": "gaussian", "sigma_px": 0.5}},
         "integrator": {"comment": "From 370 nm: below, nothing is known of N-SF11.", "spp": 256, "wavelength_range_nm": [370, 830]},
         "spectra": {
             "arc": {"type": "illuminant", "name": "D65", "scale": 4.0},
