@@ -286,9 +286,9 @@ if __name__ == "__main__":
             thing("lamp on the wall", "black", {"type": "disk", "center_m": [0.19, 0.1, -0.95], "normal": [0, 0.15, -1], "radius_m": 0.06},
                   emission={"radiance": {"type": "illuminant", "name": "D65", "scale": 4}}),
             thing("softbox above", "black", {"type": "parallelogram", "origin_m": [-0.7, 0.62, -0.9], "u_m": [0.9, 0, 0], "v_m": [0, 0.25, 0.35]},
-                  emission={"radiance": {"type": "illuminant", "name": "D65", "scale": 2.7}}),
+                  emission={"radiance": {"type": "illuminant", "name": "D65", "scale": 3.2}}),
             thing("softbox at the left", "black", {"type": "parallelogram", "origin_m": [-0.55, 0.25, 0.75], "u_m": [-0.45, 0, -0.35], "v_m": [0, 0.45, 0]},
-                  emission={"radiance": {"type": "blackbody", "temperature_k": 3600, "scale": 2.8e-4}}),
+                  emission={"radiance": {"type": "blackbody", "temperature_k": 3600, "scale": 3.4e-4}}),
         ],
         "lights": [
             {"type": "spot", "name": "arc", "position_m": [LAMP, BEAM, 0], "direction": [1, 0, 0], "half_angle_deg": 45,
