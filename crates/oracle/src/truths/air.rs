@@ -171,7 +171,7 @@ fn slabs() -> Vec<Truth> {
         case("air-of-depth-1-above-a-bright-ground", 1.0, 0.2, Upward, 0.8, 60.0, 0.8),
         case("air-of-depth-4-from-above", 4.0, 0.8, Upward, 0.4, 60.0, 0.0),
         case("air-of-depth-1-from-below", 1.0, 0.4, Downward, 0.8, 90.0, 0.0),
-        case("air-of-depth-1-above-a-grey-ground", 1.0, 0.8, Upward, 0.4, 30.0, 0.25),
+        case("air-of-depth-1-above-a-grey-ground", 1.0, 0.8, Upward, 0.8, 30.0, 0.25),
     ];
     const COSINES: [f64; 3] = [0.2, 0.4, 0.8];
     let of_depth = |depth: f64| {
