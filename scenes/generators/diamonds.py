@@ -227,7 +227,7 @@ if __name__ == "__main__":
         },
         "materials": {
             "diamond": {"type": "dielectric", "interior": "diamond"},
-            "black glass": {"type": "plastic", "reflectance": 0.0},
+            "black glass": {"type": "plastic", "reflectance": 0.003},
             "black": {"type": "black"},
         },
         "objects": [
