@@ -147,7 +147,6 @@ impl Albedos {
     }
 
     /// See [`energy_is_not_created`].
-    #[must_use]
     pub fn create_no_energy(&self) -> Verdict {
         const LAW: &str = "a surface returns no more light than it receives";
         let verdicts = self.cases.iter().map(|(wo, wavelength_nm, albedo)| {
@@ -160,7 +159,6 @@ impl Albedos {
     }
 
     /// See [`furnace_agrees`]. The subject must be the one whose albedos these are.
-    #[must_use]
     pub fn agree_with_samples(&self, subject: &dyn Scatters, budget: Budget) -> Verdict {
         const LAW: &str = "sampled and integrated albedo agree";
         let significance = budget.split(self.cases.len()).each();
