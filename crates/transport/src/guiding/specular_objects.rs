@@ -7,7 +7,7 @@ use etalon_geometry::{Geometry, PrimitiveId, SurfaceId};
 use etalon_optics::Vec3;
 
 /// Primitives of specular objects, each as often as it is placed. Scenes with more have no light paths: a list of them would fill the memory.
-const MOST_PRIMITIVES: usize = 1 << 24;
+const MOST_PRIMITIVES: usize = 1 << 22;
 
 /// Smooth mirrors, metals, glass and panes that throw light on a scene, and how it is followed.
 #[derive(Clone, Debug)]
