@@ -173,7 +173,7 @@ def write_scenes(folder):
     sky = folder / "sky.hdr"
     sky.write_bytes((SCENES / "evening-files/sky.hdr").read_bytes())
     made = {
-        "water": glass_of_water(True), "water-alone": glass_of_water(False),
+        "water-in-glass": glass_of_water(True), "water-alone": glass_of_water(False),
         "wine": glass_of_water(True, absorption_per_m=
                                {"type": "tabulated", "wavelengths_nm": [360, 500, 560, 620, 830], "values": [40, 38, 21, 4, 1]}),
         "preview-diffuse": preview({"type": "lambert", "reflectance": 0.6}),
