@@ -37,7 +37,10 @@ impl SpecularObjects {
         let smooth = |object: &ObjectSurface| is_smooth(surfaces, object);
         let mut is_one: Vec<bool> = surfaces.objects.iter().map(smooth).collect();
         let mut all = Vec::new();
-        add_placed(&mut all, (surfaces, &is_one), geometry, 0, &Affine::IDENTITY);
+        let mut known = vec![None; surfaces.object_of.len()];
+        if holds_any(&mut known, (surfaces, &is_one), geometry) {
+            add_placed(&mut all, (surfaces, &is_one, &known), geometry, 0, &Affine::IDENTITY);
+        }
         for placed in all.iter().filter(|placed| placed.area.is_none()) {
             is_one[placed.object as usize] = false;
         }
@@ -76,20 +79,33 @@ impl SpecularObjects {
     }
 }
 
+/// Whether a geometry has a primitive of objects of which `is_one` says so, itself or in what it places. `known` keeps that by the label, so that
+/// each geometry is looked at once, however often it is placed.
+fn holds_any(known: &mut [Option<bool>], (surfaces, is_one): (&Surfaces, &[bool]), geometry: &Geometry) -> bool {
+    let label = geometry.label() as usize;
+    if let Some(holds) = known[label] {
+        return holds;
+    }
+    let mut holds = surfaces.object_of[label].iter().any(|&object| is_one.get(object as usize) == Some(&true));
+    // Of all that it places, since each is asked for later.
+    for (_, instance) in geometry.instances() {
+        holds |= holds_any(known, (surfaces, is_one), instance.geometry());
+    }
+    known[label] = Some(holds);
+    holds
+}
+
 /// Adds the primitives of objects of which `is_one` says so, of a geometry that is placed by `to_frame` and whose own primitives have the
-/// instance number `number`.
+/// instance number `number`. Ends beyond [`MOST_PRIMITIVES`].
 fn add_placed(
     all: &mut Vec<Placed>,
-    (surfaces, is_one): (&Surfaces, &[bool]),
+    (surfaces, is_one, holds): (&Surfaces, &[bool], &[Option<bool>]),
     geometry: &Geometry,
     number: u32,
     to_frame: &Affine,
 ) {
     for (i, &object) in surfaces.object_of[geometry.label() as usize].iter().enumerate() {
-        if all.len() > MOST_PRIMITIVES {
-            return;
-        }
-        if is_one.get(object as usize) != Some(&true) {
+        if is_one.get(object as usize) != Some(&true) || all.len() > MOST_PRIMITIVES {
             continue;
         }
         let surface = SurfaceId { instance: number, primitive: PrimitiveId(i as u32) };
@@ -98,8 +114,13 @@ fn add_placed(
         all.push(Placed { object, surface, area });
     }
     for (inner, instance) in geometry.instances() {
-        let to_frame = to_frame.after(instance.placement());
-        add_placed(all, (surfaces, is_one), instance.geometry(), number + inner, &to_frame);
+        if all.len() > MOST_PRIMITIVES {
+            return;
+        }
+        if holds[instance.geometry().label() as usize] == Some(true) {
+            let to_frame = to_frame.after(instance.placement());
+            add_placed(all, (surfaces, is_one, holds), instance.geometry(), number + inner, &to_frame);
+        }
     }
 }
 
