@@ -314,6 +314,26 @@ fn why_no_light_paths_are_traced_is_told() {
     }
 }
 
+/// Groups within groups place a ball 4¹² times. What has no specular object is not searched, and too many of them are not listed.
+#[test]
+fn balls_without_number_are_neither_searched_nor_listed() {
+    let told = |material: &str| {
+        let mut scene = scene(json!({}), lamp(0.1), json!([wall("mirror")]), json!({}));
+        let mut groups = json!({"0": {"objects": [sphere([0.0, 0.0, 0.0], 1e-6, material)]}});
+        for level in 1..=12 {
+            let placed = |x: f64| json!({"group": (level - 1).to_string(), "transform": [{"translate_m": [x, 0, 0]}]});
+            groups[level.to_string()] = json!({"instances": [placed(0.1), placed(0.2), placed(0.3), placed(0.4)]});
+        }
+        scene["groups"] = groups;
+        scene["instances"] = json!([{"group": "12"}]);
+        let prepared = prepared(&scene, &Study::default());
+        (prepared.light_paths_per_pixel() > 0.0, prepared.warnings.join("\n"))
+    };
+    assert_eq!(told("floor"), (true, String::new()));
+    let (traced, warning) = told("glass");
+    assert!(!traced && warning.contains("no light paths are traced"), "{warning}");
+}
+
 /// Each point of the specular objects is as likely as any other.
 #[test]
 fn paths_begin_evenly_over_the_area_of_the_specular_objects() {
