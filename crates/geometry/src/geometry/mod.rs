@@ -167,68 +167,62 @@ impl Geometry {
         path
     }
 
+    /// The instance that holds a surface which is not this geometry's own, and the surface within what it places.
+    #[inline]
+    fn within(&self, surface: SurfaceId) -> Option<(&Instance, SurfaceId)> {
+        if surface.instance == 0 {
+            return None;
+        }
+        let (_, instance) = self.instance_of(surface)?;
+        Some((instance, SurfaceId { instance: surface.instance - instance.first, ..surface }))
+    }
+
     /// A normal at a surface, from the coordinates of the geometry that holds the surface's primitive to those of this one, at
     /// a time of the shutter's: of any length.
     #[inline]
     pub fn placed_normal(&self, surface: SurfaceId, normal: Vec3<f64>, time: f64) -> Vec3<f64> {
-        if surface.instance == 0 { normal } else { self.normal_in_instance(surface, normal, time) }
-    }
-
-    fn normal_in_instance(&self, surface: SurfaceId, normal: Vec3<f64>, time: f64) -> Vec3<f64> {
-        let Some((_, instance)) = self.instance_of(surface) else { return normal };
-        let inner = SurfaceId { instance: surface.instance - instance.first, ..surface };
+        let Some((instance, inner)) = self.within(surface) else { return normal };
         instance.placement_at(time).normal(instance.geometry().placed_normal(inner, normal, time))
     }
 
     /// A vector along a surface, carried as [`Geometry::placed_normal`] carries normals: as the points of the surface move.
     #[inline]
     pub fn placed_vector(&self, surface: SurfaceId, vector: Vec3<f64>, time: f64) -> Vec3<f64> {
-        if surface.instance == 0 {
-            return vector;
-        }
-        let Some((_, instance)) = self.instance_of(surface) else { return vector };
-        let inner = SurfaceId { instance: surface.instance - instance.first, ..surface };
+        let Some((instance, inner)) = self.within(surface) else { return vector };
         instance.placement_at(time).vector(instance.geometry().placed_vector(inner, vector, time))
     }
 
     /// A point of a surface, carried as [`Geometry::placed_normal`] carries normals. [`Geometry::local_point`] carries it back.
+    #[inline]
     pub fn placed_point(&self, surface: SurfaceId, point: Vec3<f64>, time: f64) -> Vec3<f64> {
-        let Some((_, instance)) = self.instance_of(surface).filter(|_| surface.instance > 0) else { return point };
-        let inner = SurfaceId { instance: surface.instance - instance.first, ..surface };
+        let Some((instance, inner)) = self.within(surface) else { return point };
         instance.placement_at(time).point(instance.geometry().placed_point(inner, point, time))
-    }
-
-    /// The primitive of a surface, in the coordinates of the geometry that holds it.
-    pub fn primitive_of(&self, surface: SurfaceId) -> &Primitive {
-        match self.instance_of(surface).filter(|_| surface.instance > 0) {
-            None => self.primitive(surface.primitive),
-            Some((_, instance)) => {
-                let inner = SurfaceId { instance: surface.instance - instance.first, ..surface };
-                instance.geometry().primitive_of(inner)
-            }
-        }
     }
 
     /// A point of this geometry in the coordinates of the geometry that holds the surface's primitive, at a time.
     #[inline]
     pub fn local_point(&self, surface: SurfaceId, point: Vec3<f64>, time: f64) -> Vec3<f64> {
-        if surface.instance == 0 {
-            return point;
-        }
-        let Some((_, instance)) = self.instance_of(surface) else { return point };
-        let inner = SurfaceId { instance: surface.instance - instance.first, ..surface };
+        let Some((instance, inner)) = self.within(surface) else { return point };
         instance.geometry().local_point(inner, instance.placement_at(time).local_point(point), time)
+    }
+
+    /// The primitive of a surface, in the coordinates of the geometry that holds it.
+    pub fn primitive_of(&self, surface: SurfaceId) -> &Primitive {
+        match self.within(surface) {
+            None => self.primitive(surface.primitive),
+            Some((instance, inner)) => instance.geometry().primitive_of(inner),
+        }
     }
 
     /// A primitive's own parameters at a point of this geometry that lies on it, at a time: what a hit of it there carries, to rounding.
     /// 0 of what has none of its own.
     pub fn parameters(&self, surface: SurfaceId, point: Vec3<f64>, time: f64) -> [f64; 2] {
-        if surface.instance == 0 {
-            return self.primitive(surface.primitive).parameters(point);
+        match self.within(surface) {
+            None => self.primitive(surface.primitive).parameters(point),
+            Some((instance, inner)) => {
+                instance.geometry().parameters(inner, instance.placement_at(time).local_point(point), time)
+            }
         }
-        let Some((_, instance)) = self.instance_of(surface) else { return [0.0; 2] };
-        let inner = SurfaceId { instance: surface.instance - instance.first, ..surface };
-        instance.geometry().parameters(inner, instance.placement_at(time).local_point(point), time)
     }
 
     /// What serves few primitives instead of a tree.

@@ -32,8 +32,8 @@ struct Placed {
 }
 
 impl SpecularObjects {
-    /// Those of a scene.
-    pub(crate) fn new(surfaces: &Surfaces, geometry: &Geometry) -> Option<Self> {
+    /// Those of a scene, or why it has none.
+    pub(crate) fn new(surfaces: &Surfaces, geometry: &Geometry) -> Result<Self, &'static str> {
         let smooth = |object: &ObjectSurface| is_smooth(surfaces, object);
         let mut is_one: Vec<bool> = surfaces.objects.iter().map(smooth).collect();
         let mut all = Vec::new();
@@ -45,7 +45,9 @@ impl SpecularObjects {
             is_one[placed.object as usize] = false;
         }
         if all.len() > MOST_PRIMITIVES {
-            return None;
+            return Err(
+                "mirrors and glass have more than four million primitives, counted as often as they are placed",
+            );
         }
         all.retain(|placed| is_one[placed.object as usize]);
         let mut area = 0.0;
@@ -55,7 +57,10 @@ impl SpecularObjects {
         });
         let (area_until, primitives) = (area_until.collect(), all.iter().map(|placed| placed.surface).collect());
         let finds_sources = surfaces.other_properties(&is_one).all(|of| !of.has_delta());
-        (area > 0.0).then_some(Self { is_one, primitives, area_until, finds_sources, paths_per_pixel: 1.0 })
+        match area > 0.0 {
+            true => Ok(Self { is_one, primitives, area_until, finds_sources, paths_per_pixel: 1.0 }),
+            false => Err("there is no smooth mirror, metal or glass that keeps its shape where it is placed"),
+        }
     }
 
     /// Whether an object is one of them.

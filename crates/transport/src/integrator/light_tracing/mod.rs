@@ -83,8 +83,7 @@ pub(crate) fn find_specular_objects(prepared: &Prepared) -> Result<SpecularObjec
     if let Some((_, reason)) = reasons.into_iter().find(|(is_so, _)| *is_so) {
         return Err(reason);
     }
-    let mut specular_objects = SpecularObjects::new(&prepared.surfaces, &prepared.geometry)
-        .ok_or("there is no smooth mirror, metal or glass that keeps its shape where it is placed")?;
+    let mut specular_objects = SpecularObjects::new(&prepared.surfaces, &prepared.geometry)?;
     // What shadow rays through glass find from what the camera sees is found by light paths alone.
     let all_glass = || prepared.surfaces.other_properties(&specular_objects.is_one).all(|of| !of.delta_transmission);
     // A study that leaves out such light of lamps without area finds none of it.
