@@ -14,7 +14,7 @@ use crate::{
 };
 
 /// Samples a direction of a statistical law. At a suite's significance of about 1e-9 a test of a mean then sees
-/// 9·σ/256 ≈ .035 σ.
+/// 9·σ/256 ≈ 0.035 σ.
 const SAMPLES: u32 = 65_536;
 
 /// Absolute error asked of quadratures over the sphere, and the most evaluations spent on one.

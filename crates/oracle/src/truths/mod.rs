@@ -59,6 +59,7 @@ mod principled_tints;
 mod prisms;
 mod rami;
 mod relief;
+mod rough_surfaces;
 mod scene;
 mod sheets;
 mod skies;
