@@ -4,8 +4,7 @@ Light of a point in the lamp house leaves through a slit along +x, crosses the p
 turned by the prism toward −z, onto the card. The prism stands a little off least deviation, so that the light leaves it at
 a larger angle than it came in: this spreads the colours more, and the beam becomes narrower.
 
-All is made of plain triangles, cylinders, disks and parallelograms: paths from the lamps need a scene without normals of
-vertices. Plain standard library.
+All is made of triangles, cylinders, disks and parallelograms. Plain standard library.
 """
 
 import math
