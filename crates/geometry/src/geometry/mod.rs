@@ -169,7 +169,7 @@ impl Geometry {
 
     /// The instance that holds a surface which is not this geometry's own, and the surface within what it places.
     #[inline]
-    fn within(&self, surface: SurfaceId) -> Option<(&Instance, SurfaceId)> {
+    fn enter_instance(&self, surface: SurfaceId) -> Option<(&Instance, SurfaceId)> {
         if surface.instance == 0 {
             return None;
         }
@@ -181,34 +181,34 @@ impl Geometry {
     /// a time of the shutter's: of any length.
     #[inline]
     pub fn placed_normal(&self, surface: SurfaceId, normal: Vec3<f64>, time: f64) -> Vec3<f64> {
-        let Some((instance, inner)) = self.within(surface) else { return normal };
+        let Some((instance, inner)) = self.enter_instance(surface) else { return normal };
         instance.placement_at(time).normal(instance.geometry().placed_normal(inner, normal, time))
     }
 
     /// A vector along a surface, carried as [`Geometry::placed_normal`] carries normals: as the points of the surface move.
     #[inline]
     pub fn placed_vector(&self, surface: SurfaceId, vector: Vec3<f64>, time: f64) -> Vec3<f64> {
-        let Some((instance, inner)) = self.within(surface) else { return vector };
+        let Some((instance, inner)) = self.enter_instance(surface) else { return vector };
         instance.placement_at(time).vector(instance.geometry().placed_vector(inner, vector, time))
     }
 
     /// A point of a surface, carried as [`Geometry::placed_normal`] carries normals. [`Geometry::local_point`] carries it back.
     #[inline]
     pub fn placed_point(&self, surface: SurfaceId, point: Vec3<f64>, time: f64) -> Vec3<f64> {
-        let Some((instance, inner)) = self.within(surface) else { return point };
+        let Some((instance, inner)) = self.enter_instance(surface) else { return point };
         instance.placement_at(time).point(instance.geometry().placed_point(inner, point, time))
     }
 
     /// A point of this geometry in the coordinates of the geometry that holds the surface's primitive, at a time.
     #[inline]
     pub fn local_point(&self, surface: SurfaceId, point: Vec3<f64>, time: f64) -> Vec3<f64> {
-        let Some((instance, inner)) = self.within(surface) else { return point };
+        let Some((instance, inner)) = self.enter_instance(surface) else { return point };
         instance.geometry().local_point(inner, instance.placement_at(time).local_point(point), time)
     }
 
     /// The primitive of a surface, in the coordinates of the geometry that holds it.
     pub fn primitive_of(&self, surface: SurfaceId) -> &Primitive {
-        match self.within(surface) {
+        match self.enter_instance(surface) {
             None => self.primitive(surface.primitive),
             Some((instance, inner)) => instance.geometry().primitive_of(inner),
         }
@@ -217,7 +217,7 @@ impl Geometry {
     /// A primitive's own parameters at a point of this geometry that lies on it, at a time: what a hit of it there carries, to rounding.
     /// 0 of what has none of its own.
     pub fn parameters(&self, surface: SurfaceId, point: Vec3<f64>, time: f64) -> [f64; 2] {
-        match self.within(surface) {
+        match self.enter_instance(surface) {
             None => self.primitive(surface.primitive).parameters(point),
             Some((instance, inner)) => {
                 instance.geometry().parameters(inner, instance.placement_at(time).local_point(point), time)
