@@ -176,9 +176,19 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             self.beta = beta;
         }
         let [_, u1, u2, u_roulette] = sampler.vertex_set(self.vertex, 0);
-        // The phase function over its own density: throughput stays as it is.
-        let (wi, density) = vertex.medium.phase.sample(vertex.wo, [u1, u2]);
-        self.polarisation.follow(vertex.wo, wi, || vertex.medium.phase.mueller(vertex.wo, wi));
+        // The phase function over its own density: throughput stays as it is, but for polarisation.
+        let phase = &vertex.medium.phase;
+        let (wi, density) = match self.polarisation.linear_worth(&self.beta) {
+            None => phase.sample(vertex.wo, [u1, u2]),
+            Some(worth) => {
+                let (wi, density, around) = phase.sample_polarised(vertex.wo, &worth, [u1, u2]);
+                self.polarisation.follow(vertex.wo, wi, || phase.mueller(vertex.wo, wi));
+                // Where it is 0 no direction is drawn but by rounding, and no light is worth anything.
+                self.beta *= self.polarisation.normalise() * if around > 0.0 { 1.0 / around } else { 0.0 };
+                // Without `around`, as for directions to lamps: any densities will do for weights that add up to 1.
+                (wi, density)
+            }
+        };
         self.guiding = 1.0;
         self.step = match sees_lights {
             true => Step::Shared {

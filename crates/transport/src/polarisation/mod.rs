@@ -41,6 +41,13 @@ pub trait Polarisation<const N: usize>: Copy {
         light: Lanes<f64, N>,
     ) -> Lanes<f64, N>;
 
+    /// What linearly polarised light that comes along the path's last ray is worth, with the lanes weighed by their throughput; `None` if
+    /// polarisation is not carried.
+    fn linear_worth(&self, beta: &Lanes<f64, N>) -> Option<LinearWorth>;
+
+    /// Divides what is carried by what unpolarised light is worth in S₀, and returns that, for the throughput.
+    fn normalise(&mut self) -> Lanes<f64, N>;
+
     /// What one unit of unpolarised light that comes in at the path's end is worth in S₀, S₁, S₂ and S₃.
     fn of_unpolarised(&self) -> [Lanes<f64, N>; 4];
 
@@ -49,6 +56,15 @@ pub trait Polarisation<const N: usize>: Copy {
 
     /// S₁, S₂ and S₃ received so far, W·m⁻²·sr⁻¹·nm⁻¹; `None` if polarisation is not carried.
     fn received(&self) -> Option<[Lanes<f64, N>; 3]>;
+}
+
+/// What S₁ and S₂ of light on a ray are worth in S₀ at the camera.
+#[derive(Clone, Copy, Debug)]
+pub struct LinearWorth {
+    /// Over what S₀ is worth.
+    pub s: [f64; 2],
+    /// The x of their frame: a unit vector at right angles to the ray.
+    pub x: Vec3<f64>,
 }
 
 /// Light is taken for unpolarised at every surface.
@@ -80,6 +96,16 @@ impl<const N: usize> Polarisation<N> for Averaged {
         light: Lanes<f64, N>,
     ) -> Lanes<f64, N> {
         light
+    }
+
+    #[inline(always)]
+    fn linear_worth(&self, _: &Lanes<f64, N>) -> Option<LinearWorth> {
+        None
+    }
+
+    #[inline(always)]
+    fn normalise(&mut self) -> Lanes<f64, N> {
+        Lanes::ONE
     }
 
     fn of_unpolarised(&self) -> [Lanes<f64, N>; 4] {
@@ -159,6 +185,19 @@ impl<const N: usize> Polarisation<N> for Followed<N> {
         let received = aside.receive(light);
         self.received = aside.received;
         received
+    }
+
+    fn linear_worth(&self, beta: &Lanes<f64, N>) -> Option<LinearWorth> {
+        let [s0, s1, s2] = [0, 1, 2].map(|j| (self.columns[j][0] * *beta).sum());
+        Some(LinearWorth { s: [s1, s2].map(|s| if s0 > 0.0 { s / s0 } else { 0.0 }), x: self.x })
+    }
+
+    fn normalise(&mut self) -> Lanes<f64, N> {
+        let s0 = self.columns[0][0];
+        // Where unpolarised light is worth nothing no light is: a Mueller matrix takes no light beyond full polarisation.
+        let over = Lanes::from_fn(|lane| if s0[lane] > 0.0 { 1.0 / s0[lane] } else { 0.0 });
+        self.columns = self.columns.map(|column| column.map(|row| row * over));
+        s0
     }
 
     fn of_unpolarised(&self) -> [Lanes<f64, N>; 4] {

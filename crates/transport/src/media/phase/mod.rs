@@ -8,6 +8,7 @@ mod henyey_greenstein;
 mod rayleigh;
 mod tabulated;
 
+use crate::polarisation::LinearWorth;
 use crate::polarisation::mueller::{Matrix, Mueller};
 use etalon_optics::{Frame, Real, Vec3};
 use etalon_scene::PhaseFunction;
@@ -85,20 +86,83 @@ impl Phase {
         (wi, self.density(-wo.dot(wi)))
     }
 
+    /// As [`Phase::sample`], for a path that carries polarisation. Light of some polarisation is worth more than other light to what the path
+    /// comes from; `worth` says which. Directions are drawn by what unpolarised light from there is worth. Returns, too, the density over
+    /// that of [`Phase::sample`].
+    ///
+    /// The angle between the directions is drawn as ever. Around `wo` the worth goes as 1 − k cos 2ψ, with ψ from where it is least
+    /// (Chandrasekhar, *Radiative Transfer*, §17): its distribution is Kepler's equation in 2ψ.
+    pub(crate) fn sample_polarised(&self, wo: Vec3<f64>, worth: &LinearWorth, u: [f64; 2]) -> (Vec3<f64>, f64, f64) {
+        let cos = self.cosine(u[0]).clamp(-1.0, 1.0);
+        let Some(matrix) = self.matrix(cos) else {
+            let (wi, density) = self.sample(wo, u);
+            return (wi, density, 1.0);
+        };
+        let [s1, s2] = worth.s.map(|s| s * matrix[1][0]);
+        let degree = s1.hypot(s2);
+        // At most 1 but for rounding: no light is more than fully polarised.
+        let k = degree.min(1.0);
+        // Half the angle at which (s1, s2) stands.
+        let least = match degree > 0.0 {
+            true if s1 >= 0.0 => [degree + s1, s2],
+            true => [s2.abs(), (degree - s1).copysign(s2)],
+            false => [1.0, 0.0],
+        };
+        let length = least[0].hypot(least[1]);
+        let (sin_psi, cos_psi) = f64::sin_cos_turns(0.5 * eccentric_anomaly(2.0 * u[1], k));
+        let [x, y] = least.map(|component| component / length);
+        let (cos_around, sin_around) = (x * cos_psi - y * sin_psi, y * cos_psi + x * sin_psi);
+        let sin = ((1.0 - cos) * (1.0 + cos)).sqrt();
+        let across = worth.x * cos_around + wo.cross(worth.x) * sin_around;
+        let wi = (across * sin - wo * cos).renormalized();
+        let around = 1.0 - k * (cos_psi - sin_psi) * (cos_psi + sin_psi);
+        (wi, self.density(-wo.dot(wi)), around)
+    }
+
+    /// What it does to polarisation at a cosine of the angle of scattering, over its first element, in frames whose x is across the plane of
+    /// both directions; `None` if it depolarises.
+    #[inline]
+    fn matrix(&self, cos: f64) -> Option<Matrix> {
+        match &self.0 {
+            Kind::Rayleigh => Some(rayleigh::mueller(cos)),
+            Kind::Tabulated(table) => table.mueller(cos),
+            Kind::Isotropic | Kind::HenyeyGreenstein(_) | Kind::Double(..) => None,
+        }
+    }
+
     /// What it does to polarisation, in frames whose x is across the plane of both directions; `None` if it depolarises.
     #[inline]
     pub(crate) fn mueller<const N: usize>(&self, wo: Vec3<f64>, wi: Vec3<f64>) -> Option<Mueller<N>> {
-        let matrix: Matrix = match &self.0 {
-            Kind::Rayleigh => rayleigh::mueller(-wo.dot(wi)),
-            Kind::Tabulated(table) => table.mueller(-wo.dot(wi))?,
-            Kind::Isotropic | Kind::HenyeyGreenstein(_) | Kind::Double(..) => return None,
-        };
+        let matrix = self.matrix(-wo.dot(wi))?;
         let across = wo.cross(wi);
         // Straight on or back: any x will do.
         let x = if across.length_squared() > 0.0 { across } else { Frame::from_normal(wo).s };
         Some(Mueller::of([matrix; N], x))
     }
 }
+
+/// The root e of e − k sin(2πe)/2π = m, Kepler's equation in turns, for k in [0, 1] and m not negative: by Newton's method from above, where
+/// each step comes nearer.
+fn eccentric_anomaly(m: f64, k: f64) -> f64 {
+    let whole = m.floor();
+    let rest = m - whole;
+    let nearest = rest.min(1.0 - rest);
+    let mut e = if nearest < 0.5 * (1.0 - k) { nearest / (1.0 - k) } else { 0.5 };
+    // As k and m come near 1 and 0, each step takes but a third of the error away.
+    for _ in 0..STEPS_OF_KEPLER {
+        let (sin, cos) = f64::sin_cos_turns(e);
+        let next = e - (e - k / (2.0 * PI) * sin - nearest) / (1.0 - k * cos);
+        // Below the root, or beside it by rounding alone.
+        if !(next > 0.0 && next < e) {
+            break;
+        }
+        e = next;
+    }
+    whole + if rest <= 0.5 { e } else { 1.0 - e }
+}
+
+/// More than any number of 53 bits takes.
+const STEPS_OF_KEPLER: u32 = 64;
 
 #[cfg(test)]
 mod tests;

@@ -91,3 +91,63 @@ fn sideways_rayleigh_scattering_polarises_across_its_plane() {
     assert_eq!([back[1][0], back[1][1], back[2][2], back[3][3]], [0.0, 1.0, -1.0, -1.0]);
     assert!(Phase::new(&PhaseFunction::Isotropic).mueller::<1>(wo, wi).is_none());
 }
+
+/// A path that carries polarisation draws the same light as one whose directions are drawn all around, and each draw of a path of one lane
+/// is worth the same.
+#[test]
+fn polarised_directions_are_drawn_by_their_worth() {
+    use crate::polarisation::{Followed, Polarisation};
+    use etalon_optics::Lanes;
+    let (wo, right) = (Vec3::new(0.6, 0.48, -0.64), Vec3::new(0.8, -0.36, 0.48));
+    let toward = Vec3::new(-0.28, 0.96, 0.0);
+    let phase = Phase::new(&PhaseFunction::Rayleigh);
+    // Light that comes from the first scattering is partly or wholly polarised.
+    for wi in [-wo, right, (right - wo).normalized(), (right + wo * 0.01).normalized()] {
+        let mut before = Followed::<1>::at_camera(-wo, right);
+        before.follow(wo, wi, || phase.mueller(wo, wi));
+        before.normalise();
+        let (from, worth) = (-wi, before.linear_worth(&Lanes::ONE).expect("it is carried"));
+        assert!(worth.s[0].hypot(worth.s[1]) < 1.0 + 1e-12 && worth.x.dot(from).abs() < 1e-12, "{worth:?}");
+        let n = 300;
+        let mut sums_of = [[0.0; 2]; 2];
+        for i in 0..n {
+            for j in 0..n {
+                let u = [i, j].map(|k| (f64::from(k) + 0.5) / f64::from(n));
+                let (drawn, density, around) = phase.sample_polarised(from, &worth, u);
+                assert_eq!(density, phase.density(-from.dot(drawn)));
+                let worth_of = |wi| {
+                    let mut after = before;
+                    after.follow(from, wi, || phase.mueller(from, wi));
+                    after.normalise()[0]
+                };
+                let s0 = worth_of(drawn);
+                // Where little is worth anything, it is a difference of nearly equal numbers.
+                assert!((s0 - around).abs() < 1e-12, "{s0} {around}");
+                let (even, _) = phase.sample(from, u);
+                for (sums, wi, weight) in [(0, even, worth_of(even)), (1, drawn, s0 / around)] {
+                    sums_of[sums][0] += wi.dot(toward).powi(2) * weight;
+                    sums_of[sums][1] += (wi.dot(toward) * wi.dot(right)).powi(2) * weight;
+                }
+            }
+        }
+        let [even, drawn] = sums_of.map(|sums| sums.map(|sum| sum / f64::from(n * n)));
+        // The midpoints of 300² cells: smooth numbers are summed to 1e-5, the ends of the distribution to 1e-4.
+        (0..2).for_each(|k| assert!((even[k] - drawn[k]).abs() < 3e-4 * even[k], "{wi:?}: {even:?} {drawn:?}"));
+    }
+    // What depolarises is drawn as ever.
+    let fog = Phase::new(&PhaseFunction::HenyeyGreenstein { g: 0.5 });
+    let worth = Followed::<1>::at_camera(-wo, right).linear_worth(&Lanes::ONE).expect("it is carried");
+    let (wi, density) = fog.sample(wo, [0.3, 0.7]);
+    assert_eq!(fog.sample_polarised(wo, &worth, [0.3, 0.7]), (wi, density, 1.0));
+}
+
+#[test]
+fn keplers_equation_is_solved_to_rounding() {
+    for k in [0.0, 1e-9, 0.3, 0.9, 1.0 - 1e-12, 1.0] {
+        for m in [0.0, 2f64.powi(-52), 1e-9, 0.01, 0.3, 0.5, 0.7, 1.0, 1.5, 2.0 - 2f64.powi(-52)] {
+            let e = eccentric_anomaly(m, k);
+            let left = e - k / (2.0 * PI) * (2.0 * PI * e).sin();
+            assert!((left - m).abs() < 1e-15, "{m} {k}: {e}, off by {:e}", left - m);
+        }
+    }
+}
