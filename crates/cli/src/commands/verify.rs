@@ -50,8 +50,8 @@ pub(crate) struct VerifyArgs {
     /// Seed of the random numbers.
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// Take enough samples to find a relative bias of 0.2 % in every scene, or of 0.02 % in scenes that are named: from 32 million to 4 billion
-    /// rays per scene. Each film is then one pixel whose samples cover the whole picture.
+    /// Take enough samples to find a relative bias of 0.2 % in every scene, or of 0.02 % in a scene whose whole name is given: from 32 million to
+    /// 4 billion rays per scene. Each film is then one pixel whose samples cover the whole picture.
     #[arg(long)]
     thorough: bool,
     /// Number of threads. Default: all cores.

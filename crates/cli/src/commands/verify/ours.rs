@@ -25,8 +25,8 @@ const FIRST: u32 = 4;
 const MORE: u32 = 4;
 /// It does so at most this many times.
 const STEPS: u32 = 4;
-/// What a thorough run wants to see of each truth, relative: of all, and of those that were asked for by name. How many rays it spends on
-/// that of every truth, and how many where as many will do. In rays, not in seconds, so that what is read is the same on every machine.
+/// What a thorough run wants to see of each truth, relative, and of those whose whole name was given. How many rays it spends on that for
+/// every truth, and how many where as many will do. In rays, not in seconds, so that what is read is the same on every machine.
 const THOROUGH_SEES: f64 = 2e-3;
 const THOROUGH_SEES_BY_NAME: f64 = 2e-4;
 const THOROUGH_RAYS: u64 = 32_000_000;
@@ -234,7 +234,8 @@ fn measured(
     interrupt: &Interrupt,
 ) -> Result<(Reading, u32), Stop> {
     let truth = measurement.truth;
-    let wanted = if args.names.is_empty() { THOROUGH_SEES } else { THOROUGH_SEES_BY_NAME } * truth.value().abs();
+    let sees = if args.names.contains(&truth.name) { THOROUGH_SEES_BY_NAME } else { THOROUGH_SEES };
+    let wanted = sees * truth.value().abs();
     let (mut step, mut seen_before) = (0, f64::INFINITY);
     loop {
         let reading = measurement.render_to(MORE.pow(step), significance, interrupt)?;
