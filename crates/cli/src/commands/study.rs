@@ -3,6 +3,7 @@
 mod choices;
 mod measure;
 mod page;
+mod pictures;
 mod plots;
 mod report;
 
@@ -19,6 +20,7 @@ use crate::load::load;
 use crate::machine::{Clock, ClockKind, Machine};
 use crate::print;
 use measure::{Effort, SceneStudy};
+use pictures::Pictures;
 
 /// Measure what samplers, path depth, light sampling and effects gain and cost.
 ///
@@ -29,7 +31,7 @@ use measure::{Effort, SceneStudy};
 pub(crate) struct StudyArgs {
     /// Scenes as JSON files, or truths of the oracle as truth:NAME (see `etalon verify`). Default: all scenes in the folder `scenes`.
     scenes: Vec<String>,
-    /// Folder for study.json, study.md, study.html and the plots. It is created if it does not exist.
+    /// Folder for study.json, study.md, study.html, pictures and plots. It is created if it does not exist.
     #[arg(short, long, alias = "outfile", value_name = "FOLDER")]
     output: PathBuf,
     /// Width of the pictures in pixels. The height follows from the shape of the film.
@@ -183,23 +185,27 @@ fn of_truth(name: &str) -> Result<Subject, Failure> {
 
 fn write(folder: &Path, report: &StudyReport) -> Outcome {
     let failed = |error| Failure::run(Report::from_err(error));
-    let put = |name: &str, text: &str| {
-        write_atomically(&folder.join(name), |out| out.write_all(text.as_bytes())).map_err(failed)
-    };
-    let drawn: Result<Vec<Vec<plots::Plot>>, String> = report.scenes.iter().map(plots::of).collect();
-    let drawn = drawn.map_err(|error| Failure::run(miette!("cannot draw a plot: {error}")))?;
+    let put =
+        |name: &str, bytes: &[u8]| write_atomically(&folder.join(name), |out| out.write_all(bytes)).map_err(failed);
+    let styles = plots::Styles::of(&report.scenes);
+    let mut drawn = Vec::new();
     let mut files = Vec::new();
-    for (study, plots) in report.scenes.iter().zip(&drawn) {
-        let mut names = Vec::new();
-        for plot in plots {
+    for study in &report.scenes {
+        let pictures = Pictures::of(study).map_err(|error| Failure::run(miette!("cannot show a picture: {error}")))?;
+        let plots = plots::of(study, &styles);
+        let plots = plots.map_err(|error| Failure::run(miette!("cannot draw a plot: {error}")))?;
+        let mut names = vec![format!("{}.png", study.scene)];
+        put(&names[0], pictures.reference())?;
+        for plot in &plots {
             let name = format!("{}.svg", plot.name);
-            put(&name, &plot.svg)?;
+            put(&name, plot.svg.as_bytes())?;
             names.push(name);
         }
         files.push((study.scene.clone(), names));
+        drawn.push((pictures, plots));
     }
     let json = serde_json::to_string_pretty(report).expect("a report is plain data with text keys");
-    put("study.json", &json)?;
-    put("study.md", &report::markdown(report, &files))?;
-    put("study.html", &page::html(report, &drawn))
+    put("study.json", json.as_bytes())?;
+    put("study.md", report::markdown(report, &files).as_bytes())?;
+    put("study.html", page::html(report, &drawn).as_bytes())
 }

@@ -33,6 +33,20 @@ pub(super) struct SceneStudy {
     pub truth: Option<f64>,
     pub reference: Reference,
     pub rows: Vec<Row>,
+    /// The scene as it is, after more and more samples, and the reference last.
+    #[serde(skip)]
+    pub pictures: Vec<Stage>,
+}
+
+/// A picture at some number of samples.
+#[derive(Clone, Debug)]
+pub(super) struct Stage {
+    pub samples: u32,
+    pub seconds: f64,
+    /// Relative; `None` where it is not known.
+    pub error: Option<f64>,
+    /// XYZ of each pixel, row after row.
+    pub xyz: Vec<[f64; 3]>,
 }
 
 /// The picture that the others are held against.
@@ -139,6 +153,10 @@ impl Runner {
         Ok(())
     }
 
+    fn stage(&self, error: Option<f64>) -> Stage {
+        Stage { samples: self.samples, seconds: self.seconds, error, xyz: self.film.xyz().collect() }
+    }
+
     fn scatter(&self) -> Option<f64> {
         let error = self.film.error(self.prepared.whole(None).rect).filter(ImageError::is_known)?;
         Some(error.relative_rmse)
@@ -193,6 +211,7 @@ pub(super) fn study(
     let heavy_tailed = reference.film.error(reference.prepared.whole(None).rect).is_some_and(|e| e.is_heavy_tailed());
 
     // All choices at one number of samples, then all at the next: what disturbs the machine disturbs all alike.
+    let mut pictures = Vec::new();
     let mut next = FIRST;
     loop {
         let mut went_on = false;
@@ -206,6 +225,9 @@ pub(super) fn study(
             let error = error_to(&runner.film, &truth_picture, mean_y, own);
             let scatter = runner.scatter();
             runner.points.push(Point { samples: next, seconds: runner.seconds, error, scatter });
+            if runner.choice.name == BASELINE {
+                pictures.push(runner.stage(error.or(scatter)));
+            }
             went_on = true;
         }
         if !went_on {
@@ -213,6 +235,7 @@ pub(super) fn study(
         }
         next *= FACTOR;
     }
+    pictures.push(reference.stage(known));
     let baseline = runners[0].seconds / f64::from(runners[0].samples);
     let rows = runners.iter().map(|runner| row(runner, baseline, truth, mean_y, own)).collect();
     Ok(SceneStudy {
@@ -228,6 +251,7 @@ pub(super) fn study(
             heavy_tailed,
         },
         rows,
+        pictures,
     })
 }
 

@@ -1,12 +1,12 @@
 //! The plots of a study, as SVG.
 
+use plotters::element::DashedPathElement;
 use plotters::prelude::*;
 
 use super::measure::{Row, SceneStudy};
 
-/// Okabe & Ito's colours, which most people can tell apart, the baseline's black first.
-const COLOURS: [RGBColor; 7] = [
-    RGBColor(0, 0, 0),
+/// Okabe & Ito's colours but for black, which is the baseline's. Most people can tell them apart.
+const COLOURS: [RGBColor; 6] = [
     RGBColor(230, 159, 0),
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
@@ -15,7 +15,44 @@ const COLOURS: [RGBColor; 7] = [
     RGBColor(86, 180, 233),
 ];
 
-const SIZE: (u32, u32) = (620, 400);
+/// Pixels; narrow enough for the labels to be read on a phone.
+const SIZE: (u32, u32) = (460, 380);
+
+/// Lengths of dashes and gaps, pixels. A line without gaps is whole.
+const DASHES: [(u32, u32); 5] = [(24, 0), (9, 4), (3, 3), (16, 4), (9, 9)];
+
+/// How each choice of a report is drawn: the same in all of its plots. After colours come dashes.
+pub(super) struct Styles(Vec<String>);
+
+impl Styles {
+    /// Of all choices that have curves, in the order of the plots.
+    pub(super) fn of(studies: &[SceneStudy]) -> Self {
+        let mut choices: Vec<String> = Vec::new();
+        for (_, _, groups) in PLOTS {
+            for row in studies.iter().flat_map(|study| &study.rows).filter(|row| is_drawn(row, groups)) {
+                if !choices.contains(&row.choice) {
+                    choices.push(row.choice.clone());
+                }
+            }
+        }
+        Self(choices)
+    }
+
+    fn find(&self, choice: &str) -> (ShapeStyle, (u32, u32)) {
+        match self.0.iter().position(|other| other == choice) {
+            None => (BLACK.stroke_width(3), DASHES[0]),
+            Some(place) => {
+                let dashes = DASHES[place / COLOURS.len() % DASHES.len()];
+                (COLOURS[place % COLOURS.len()].stroke_width(2), dashes)
+            }
+        }
+    }
+}
+
+/// An effect that is forced changes no bit of the picture: what it costs stands among the bars.
+fn is_drawn(row: &Row, groups: &[&str]) -> bool {
+    groups.contains(&row.group) && !row.choice.ends_with(" forced")
+}
 
 /// A plot: its name, which is also the stem of its file, and the SVG.
 pub(super) struct Plot {
@@ -33,15 +70,13 @@ const PLOTS: [(&str, &str, &[&str]); 5] = [
 ];
 
 /// All plots of a scene.
-pub(super) fn of(study: &SceneStudy) -> Result<Vec<Plot>, String> {
+pub(super) fn of(study: &SceneStudy, styles: &Styles) -> Result<Vec<Plot>, String> {
     let mut plots = Vec::new();
     for (name, title, groups) in PLOTS {
-        // An effect that is forced changes no bit of the picture: what it costs stands among the bars.
-        let shown = |row: &&Row| groups.contains(&row.group) && !row.choice.ends_with(" forced");
-        let rows: Vec<&Row> = study.rows.iter().filter(shown).collect();
+        let rows: Vec<&Row> = study.rows.iter().filter(|row| is_drawn(row, groups)).collect();
         if !rows.is_empty() {
             let title = format!("{}: {title}", study.scene);
-            let svg = curves(&title, &study.rows[0], &rows).map_err(|error| error.to_string())?;
+            let svg = curves(&title, &study.rows[0], &rows, styles).map_err(|error| error.to_string())?;
             plots.push(Plot { name: format!("{}-{name}", study.scene), svg });
         }
     }
@@ -53,7 +88,7 @@ pub(super) fn of(study: &SceneStudy) -> Result<Vec<Plot>, String> {
 type Drawn<T> = Result<T, Box<dyn std::error::Error>>;
 
 /// Error against time, both logarithmic, a curve a choice.
-fn curves(title: &str, baseline: &Row, rows: &[&Row]) -> Drawn<String> {
+fn curves(title: &str, baseline: &Row, rows: &[&Row], styles: &Styles) -> Drawn<String> {
     let all: Vec<&Row> = std::iter::once(baseline).chain(rows.iter().copied()).collect();
     let points = |row: &Row| -> Vec<(f64, f64)> {
         let error = |point: &super::measure::Point| point.error.or(point.scatter).filter(|&error| error > 0.0);
@@ -94,14 +129,17 @@ fn curves(title: &str, baseline: &Row, rows: &[&Row]) -> Drawn<String> {
             .x_label_formatter(&|x| plain(*x))
             .y_label_formatter(&|y| format!("{} %", plain(100.0 * y)))
             .draw()?;
-        for (index, row) in all.iter().enumerate() {
-            let colour = COLOURS[index % COLOURS.len()];
-            let width = if index == 0 { 3 } else { 2 };
-            chart
-                .draw_series(LineSeries::new(points(row), colour.stroke_width(width)))?
+        for row in all {
+            let (style, (dash, gap)) = styles.find(&row.choice);
+            let line = points(row);
+            let drawn = match gap {
+                0 => chart.draw_series(LineSeries::new(line.clone(), style))?,
+                _ => chart.draw_series(DashedLineSeries::new(line.clone(), dash, gap, style))?,
+            };
+            drawn
                 .label(row.choice.clone())
-                .legend(move |(x, y)| PathElement::new(vec![(x, y), (x + 18, y)], colour.stroke_width(width)));
-            chart.draw_series(points(row).into_iter().map(|p| Circle::new(p, 3, colour.filled())))?;
+                .legend(move |(x, y)| DashedPathElement::new([(x, y), (x + 24, y)].into_iter(), dash, gap, style));
+            chart.draw_series(line.into_iter().map(|p| Circle::new(p, 3, style.color.filled())))?;
         }
         chart
             .configure_series_labels()
@@ -118,22 +156,22 @@ fn curves(title: &str, baseline: &Row, rows: &[&Row]) -> Drawn<String> {
 /// What each effect adds to the time of a sample, and what else a choice costs or saves.
 fn estimates(study: &SceneStudy) -> Drawn<String> {
     let bars: Vec<(String, f64)> = study.rows.iter().skip(1).map(cost_estimate).collect();
-    let height = 62 + 24 * bars.len() as u32;
+    let height = 78 + 24 * bars.len() as u32;
     let most = bars.iter().map(|bar| bar.1.abs()).fold(5.0, f64::max);
     let mut svg = String::new();
     {
         let root = SVGBackend::with_string(&mut svg, (SIZE.0, height)).into_drawing_area();
         root.fill(&WHITE)?;
-        let title = format!("{}: time of a sample beside that of the scene as it is", study.scene);
-        root.draw(&Text::new(title, (8, 8), ("sans-serif", 17).into_font()))?;
-        let (left, middle, reach) = (240, 420, 120.0);
-        root.draw(&PathElement::new(vec![(middle, 34), (middle, height as i32 - 12)], BLACK.mix(0.5)))?;
+        root.draw(&Text::new(format!("{}: time of a sample", study.scene), (8, 8), ("sans-serif", 17).into_font()))?;
+        let beside = "beside that of the scene as it is";
+        root.draw(&Text::new(beside, (8, 28), ("sans-serif", 13).into_font()))?;
+        let (left, middle, reach) = (200, 310, 95.0);
+        root.draw(&PathElement::new(vec![(middle, 50), (middle, height as i32 - 12)], BLACK.mix(0.5)))?;
         for (index, (name, percent)) in bars.iter().enumerate() {
-            let y = 40 + 24 * index as i32;
+            let y = 56 + 24 * index as i32;
             let end = middle + (reach * percent / most).round() as i32;
-            let colour = if *percent > 0.0 { COLOURS[3] } else { COLOURS[2] };
             root.draw(&Text::new(name.clone(), (8, y + 2), ("sans-serif", 13).into_font()))?;
-            root.draw(&Rectangle::new([(middle.min(end), y), (middle.max(end), y + 16)], colour.filled()))?;
+            root.draw(&Rectangle::new([(middle.min(end), y), (middle.max(end), y + 16)], BLACK.mix(0.45).filled()))?;
             let at = if *percent > 0.0 { end + 5 } else { middle + 5 };
             root.draw(&Text::new(format!("{percent:+.0} %"), (at.max(left), y + 2), ("sans-serif", 13).into_font()))?;
         }

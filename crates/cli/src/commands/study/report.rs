@@ -76,6 +76,50 @@ pub(super) fn about(study: &SceneStudy) -> String {
     )
 }
 
+/// Errors of which a headline states the time, the smallest first.
+const ERRORS: [f64; 5] = [0.01, 0.02, 0.05, 0.1, 0.2];
+
+/// Groups of choices that leave the picture and its error bars as they are, so that their times to an error can be compared.
+const SAME_PICTURE: [&str; 6] = ["where samples go", "paths", "sampler", "wavelengths", "direct light", "roulette"];
+
+/// What a scene costs, and which choice changes that most, in a few sentences.
+pub(super) fn headline(study: &SceneStudy) -> String {
+    let baseline = &study.rows[0];
+    let reached = falling(&baseline.points);
+    let cost = ERRORS.iter().find_map(|&error| Some((error, time_to(&reached, error)?)));
+    let cost = match (cost, baseline.error) {
+        (Some((error, seconds)), _) => format!("{} error after {}.", percent(error), duration(seconds)),
+        (None, Some(error)) => format!("{} error after {}.", percent(error), duration(baseline.seconds)),
+        (None, None) => return "No error was found.".to_owned(),
+    };
+    let compared = |row: &&Row| {
+        SAME_PICTURE.contains(&row.group) && row.choice != "three channels (RGB)" && row.z.is_none_or(|z| z.abs() < 4.0)
+    };
+    // Time to the same error, over that of the scene as it is.
+    let ratio = |row: &Row| Some(baseline.efficiency? / row.efficiency?);
+    let ratios = study.rows[1..].iter().filter(compared).filter_map(|row| Some((row.choice.as_str(), ratio(row)?)));
+    let mut ratios: Vec<(&str, f64)> = ratios.collect();
+    ratios.sort_by(|a, b| a.1.total_cmp(&b.1));
+    let mut said = vec![cost];
+    if let Some(&(choice, ratio)) = ratios.first()
+        && ratio < 1.0 / NOTABLE
+    {
+        said.push(format!("Best change: {choice}, {} of the time for the same error.", two_digits(ratio)));
+    }
+    if let Some(&(choice, ratio)) = ratios.last()
+        && ratio > NOTABLE
+    {
+        said.push(format!("Worst: {choice}, {} times as long.", two_digits(ratio)));
+    }
+    if study.reference.heavy_tailed {
+        said.push("Rare bright paths make these numbers inaccurate.".to_owned());
+    }
+    said.join(" ")
+}
+
+/// Ratios of times nearer to 1 are not worth a sentence.
+const NOTABLE: f64 = 1.1;
+
 /// One line about the whole.
 pub(super) fn heading(report: &StudyReport) -> String {
     format!(
@@ -163,17 +207,20 @@ pub(super) fn verdict(samplers: &[Verdict]) -> String {
 
 /// Time of `a` over that of `b` to the smallest error that both have reached.
 fn time_ratio(a: &[Point], b: &[Point]) -> Option<f64> {
-    let [a, b] = [a, b].map(|points| {
-        let seen: Vec<(f64, f64)> = points
-            .iter()
-            .filter_map(|point| Some((point.seconds, point.error.or(point.scatter)?)))
-            .filter(|(_, error)| *error > 0.0)
-            .collect();
-        believable(&seen)
-    });
+    let [a, b] = [a, b].map(falling);
     let smallest = |points: &[(f64, f64)]| points.last().map(|point| point.1);
     let error = smallest(&a)?.max(smallest(&b)?);
     Some(time_to(&a, error)? / time_to(&b, error)?)
+}
+
+/// Seconds and errors of points, as far as they can be believed.
+fn falling(points: &[Point]) -> Vec<(f64, f64)> {
+    let seen: Vec<(f64, f64)> = points
+        .iter()
+        .filter_map(|point| Some((point.seconds, point.error.or(point.scatter)?)))
+        .filter(|(_, error)| *error > 0.0)
+        .collect();
+    believable(&seen)
 }
 
 /// When the error, which falls from point to point, passed `error`: as a power of time between the two points about it.
@@ -187,8 +234,8 @@ fn time_to(points: &[(f64, f64)], error: f64) -> Option<f64> {
     Some(t0 * ((e0 / error).ln() / (e0 / e1).ln() * (t1 / t0).ln()).exp())
 }
 
-/// The whole study as Markdown; plots are files beside it.
-pub(super) fn markdown(report: &StudyReport, plots: &[(String, Vec<String>)]) -> String {
+/// The whole study as Markdown; pictures and plots are files beside it.
+pub(super) fn markdown(report: &StudyReport, files: &[(String, Vec<String>)]) -> String {
     let mut text = format!("# What accuracy costs in time\n\n{}\n\n{LEGEND}\n", heading(report));
     let samplers = samplers(report);
     if !samplers.is_empty() {
@@ -203,17 +250,16 @@ pub(super) fn markdown(report: &StudyReport, plots: &[(String, Vec<String>)]) ->
         }
     }
     for study in &report.scenes {
-        let _ = write!(text, "\n## {}\n\n{}\n\n", study.scene, about(study));
+        let files = files.iter().find(|(scene, _)| *scene == study.scene).map_or(&[][..], |(_, files)| files);
+        let _ = write!(text, "\n## {}\n\n{} {}\n\n", study.scene, headline(study), about(study));
         let _ = writeln!(text, "| {} |", columns().join(" | "));
         let _ = writeln!(text, "|---|{}", "---:|".repeat(columns().len() - 1));
         for row in &study.rows {
             let _ = writeln!(text, "| {} |", cells(row, study).join(" | "));
         }
-        for (_, files) in plots.iter().filter(|(scene, _)| *scene == study.scene) {
-            text.push('\n');
-            for file in files {
-                let _ = writeln!(text, "![{file}]({file})");
-            }
+        text.push('\n');
+        for file in files {
+            let _ = writeln!(text, "![{file}]({file})");
         }
     }
     text
