@@ -72,7 +72,7 @@ PICTURES = [
             "do on real dials."),
     Picture("diamonds", "scenes/diamonds.json", ["--exposure", "-0.5", "--curve", "agx"],
             "Cut diamonds on black glass: a round brilliant, an emerald cut, an oval, and small brilliants. Wide lamps make brilliance, the white light that a "
-            "stone returns. Rows of narrow lamps make fire, the pure colours at their edges. Nothing but the index of diamond colours the light.", size="480x320"),
+            "stone returns. Rows of narrow lamps make fire, the pure colours at their edges. Nothing but the index of diamond colours the light.", size="432x288"),
     Picture("rosette", "scenes/rosette.json", ["--exposure", "0.6"],
             "A window without coloured glass: stacks of clear film between crossed polarisers. Only the delay of each stack, 115 nm a sheet, decides its "
             "colour. The outer ring is Michel-Lévy's chart from 1 to 24 sheets and back. The varnished floor polarises what it mirrors."),
@@ -84,6 +84,21 @@ PICTURES = [
     Picture("chess", "scenes/chess.json", ["--exposure", "1.5", "--curve", "agx"],
             "Chess men close up, by a lens of 75 mm at f/4. The disks behind are images of the lens, one for each lamp of the string.", error="10%"),
 ]
+
+
+BESIDE_OTHERS = """
+## Beside other galleries
+
+On 29 November 2026 these pictures were laid beside the 33 scenes and seven banners of Mitsuba 3's gallery, and beside the pictures in pbrt-v4's repository.
+
+- The watch, the movement, the chess men and the glass of water hold their own. Brushed metal, the blur of the lens and the light that gathers behind glass look as
+  good as in any picture there.
+- Their interiors are richer: kitchens, bathrooms and staircases by artists, where ours is one room of boxes and books. Their gallery has hair, fur and cars. Etalon
+  does not render hair.
+- Theirs has no soap film, no grating, no crossed polarisers, no fluorescent paint and no spectrum. These pictures are what Etalon is for.
+- The coatings, the titanium rods and the black light look like plates of a textbook. The bubble, the black light and the prism in smoke are still noisy.
+- No picture there states its error or its time.
+"""
 
 
 def told(seconds):
@@ -155,7 +170,7 @@ def write_page(receipts):
     head = ("# Gallery\n\nEach picture states its error and what it cost. `python3 docs/gallery/gallery.py` renders them all and writes this page. The models and images\n"
             "are made by the scripts in [scenes/generators](../../scenes/generators). No picture was denoised or retouched.\n\n")
     shown = [section(picture, receipts[picture.name]) for picture in PICTURES if picture.name in receipts]
-    (here / "README.md").write_text(head + "\n".join(shown))
+    (here / "README.md").write_text(head + "\n".join(shown) + BESIDE_OTHERS)
 
 
 main()
