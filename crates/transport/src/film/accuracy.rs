@@ -20,9 +20,16 @@ const Z_95: f64 = 1.959_963_984_540_054;
 /// mean luminance of pictures with caustics lies in its 95 % interval in 93 to 97 % of all renders; above, in 4 to 92 %
 /// (`docs/accuracy.md`, `tests/coverage.rs`).
 pub const HEAVY_TAIL: f64 = 0.15;
-/// [`ImageError::pixel_tail_index`] above which the intervals of single pixels are too short. Measured: below, 95 % intervals
-/// hold the truth in 93 to 97 % of all pixels; with caustics found by chance, above, in 31 to 79 %.
-pub const HEAVY_PIXEL_TAIL: f64 = 0.05;
+/// [`ImageError::pixel_tail_index`] above which the intervals of single pixels are too short. Chosen on the ready-made scenes: below, and
+/// with a tail index below [`HEAVY_TAIL`], 95 % intervals hold the truth in 93 to 97 % of all pixels. Judged on drawn scenes
+/// (`docs/accuracy.md`).
+pub const HEAVY_PIXEL_TAIL: f64 = 0.02;
+
+/// The share of one of four replicates in the scatter of all, above which it stands alone. The largest possible is ¾.
+const ALONE: f64 = 0.74;
+/// How often it does so if replicates are normal. Their residuals are then a random direction in space. It lies within a cone about one of
+/// the eight corners of a cube, whose cosine is √([`ALONE`]/¾): 4(1 − √(0.74/0.75)).
+const ALONE_BY_CHANCE: f64 = 0.026_756_153_132_975_86;
 
 /// Where chance finds light: replicates of pixels that must have found some before the interval of the error is stated. After k finds
 /// the interval of their true number is about k·exp(±2/√k). That holds for many. After one find the interval of the error would end at
@@ -44,11 +51,12 @@ pub struct ImageError {
     /// is one outlier among its replicates. Rare bright paths do this, and then both errors and intervals are too small in
     /// most renders and too large in the few that found such a path. `None` with fewer than four replicates.
     pub tail_index: Option<f64>,
-    /// The same with every noisy pixel counted alike, whatever its part in the error of the picture: above
-    /// [`HEAVY_PIXEL_TAIL`] the intervals of single pixels are too short, though that of the picture may be right. Where a pixel
-    /// has not met any of its rare paths yet, its own replicates cannot tell; those of others do.
+    /// The share of noisy pixels whose error is one outlier among their replicates, beyond what chance makes: 0 for normally distributed
+    /// replicates, 1 if it is so in all pixels. Above [`HEAVY_PIXEL_TAIL`] the intervals of single pixels are too short, though that of
+    /// the picture may be right. Where a pixel has not met any of its rare paths yet, its own replicates cannot tell; those of others do.
+    /// `None` with fewer than four replicates.
     pub pixel_tail_index: Option<f64>,
-    /// Pixels with noise, over which that is a mean: it scatters by ½/√pixels.
+    /// Pixels with noise, of which that is a share: it scatters by 0.16/√pixels.
     pub noisy_pixels: u64,
     /// The noisiest tile; `None` where E is unknown.
     pub noisiest: Option<Region>,
@@ -77,10 +85,11 @@ impl ImageError {
         self.tail_index.is_some_and(|index| index > HEAVY_TAIL)
     }
 
-    /// Whether rare bright paths make the intervals of single pixels unreliable, by three standard errors.
+    /// Whether rare bright paths make the intervals of single pixels unreliable: those of the picture, or an index that is too large by
+    /// three standard errors. Where rare paths carry the error of the picture, most pixels have met none of theirs.
     pub fn has_heavy_tailed_pixels(&self) -> bool {
-        let chance = 1.5 / (self.noisy_pixels as f64).sqrt();
-        self.pixel_tail_index.is_some_and(|index| index > HEAVY_PIXEL_TAIL + chance)
+        let chance = 3.0 * (ALONE_BY_CHANCE * (1.0 - ALONE_BY_CHANCE) / self.noisy_pixels as f64).sqrt();
+        self.is_heavy_tailed() || self.pixel_tail_index.is_some_and(|index| index > HEAVY_PIXEL_TAIL + chance)
     }
 }
 
@@ -113,9 +122,9 @@ pub struct ErrorSum {
     normal_uncertainty: f64,
     /// Σ of variance times largest share of one group of replicates.
     outlier: f64,
-    /// Σ of those shares, and pixels that have one.
-    outlier_of_pixels: f64,
+    /// Pixels that have such a share, and those where it is above [`ALONE`].
     grouped: u64,
+    alone: u64,
     /// Replicates of pixels that found light, and all replicates of the pixels where at least one did.
     lit: u64,
     tried: u64,
@@ -147,8 +156,8 @@ impl ErrorSum {
         self.normal_uncertainty += 2.0 / f64::from(freedom + 2) * variance * variance;
         if let Some(share) = outlier_share(pixel) {
             self.outlier += variance * share;
-            self.outlier_of_pixels += share;
             self.grouped += 1;
+            self.alone += u64::from(share > ALONE);
         }
     }
 
@@ -213,19 +222,16 @@ impl ErrorSum {
 
     /// See [`ImageError::tail_index`].
     pub fn tail_index(&self) -> Option<f64> {
-        (self.grouped > 0 && self.variance > 0.0).then(|| Self::index(self.outlier / self.variance))
+        // The largest share of four normal residuals in their sum of squares is, in the mean, ¾ of the mean squared cosine
+        // between a random direction and the nearest of a cube's corners: (1 + 6 E|xy|)/3 with E|xy| = 2/(3π).
+        let normal = 0.25 * (1.0 + 4.0 / PI);
+        (self.grouped > 0 && self.variance > 0.0).then(|| (self.outlier / self.variance - normal) / (0.75 - normal))
     }
 
     /// See [`ImageError::pixel_tail_index`].
     pub fn pixel_tail_index(&self) -> Option<f64> {
-        (self.grouped > 0).then(|| Self::index(self.outlier_of_pixels / self.grouped as f64))
-    }
-
-    fn index(share: f64) -> f64 {
-        // The largest share of four normal residuals in their sum of squares is, in the mean, ¾ of the mean squared cosine
-        // between a random direction and the nearest of a cube's corners: (1 + 6 E|xy|)/3 with E|xy| = 2/(3π).
-        let normal = 0.25 * (1.0 + 4.0 / PI);
-        (share - normal) / (0.75 - normal)
+        let share = self.alone as f64 / self.grouped as f64;
+        (self.grouped > 0).then(|| (share - ALONE_BY_CHANCE) / (1.0 - ALONE_BY_CHANCE))
     }
 
     /// Mean Y of the pixels that are known.

@@ -9,7 +9,13 @@ use etalon_scene::Scene;
 
 /// The ready-made scenes by name, at a size, pixels, and a number of samples that a test can afford.
 pub(crate) fn ready_made(size: [u32; 2], spp: u32) -> Vec<(String, Scene)> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
+    let scenes = scenes_of(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes"), size, spp);
+    assert!(scenes.len() >= 11);
+    scenes
+}
+
+/// The scenes of a folder, as [`ready_made`] gives them.
+pub(crate) fn scenes_of(folder: &Path, size: [u32; 2], spp: u32) -> Vec<(String, Scene)> {
     let mut scenes: Vec<_> = std::fs::read_dir(folder)
         .unwrap()
         .map(|entry| entry.unwrap().path())
@@ -23,6 +29,5 @@ pub(crate) fn ready_made(size: [u32; 2], spp: u32) -> Vec<(String, Scene)> {
         })
         .collect();
     scenes.sort_by(|a, b| a.0.cmp(&b.0));
-    assert!(scenes.len() >= 11);
     scenes
 }

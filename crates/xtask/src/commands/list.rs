@@ -186,6 +186,13 @@ pub(super) const COMMANDS: &[(&str, &[Named])] = &[
                 Ignored { package: "etalon-transport", target: INTEGRATION, name: "coverage_over_lamps" },
             ),
             named(
+                "flags",
+                "",
+                "whether pictures whose error bars are too small are flagged, on the ready-made scenes or on ETALON_SCENES",
+                "30 min",
+                Ignored { package: "etalon-transport", target: INTEGRATION, name: "flags_of_scenes" },
+            ),
+            named(
                 "compare-pairs",
                 "",
                 "a hundred pairs of pictures that differ by their seed are called the same",

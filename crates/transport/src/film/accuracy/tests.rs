@@ -164,3 +164,37 @@ fn the_interval_holds_the_truth_however_rarely_light_is_found() {
         assert!(held >= 365, "{lit}: {held} of 400");
     }
 }
+
+/// Of normal replicates one stands alone in 2.7 % of pixels; of those that have met one rare path each, in all.
+#[test]
+fn the_index_of_pixels_is_0_for_normal_replicates_and_1_for_single_finds() {
+    let mut random = Uniform::new(3);
+    let mut normal = || {
+        let [u, v] = [random.number(), random.number()];
+        (-2.0 * (1.0 - u).ln()).sqrt() * (2.0 * PI * v).cos()
+    };
+    let (side, replicates) = (200, 4);
+    let film_of_normals = film(side, replicates, |_| 5.0 + normal());
+    let error = film_of_normals.error(whole(&film_of_normals)).unwrap();
+    // 40,000 pixels tell the index to 0.0008.
+    assert!(error.pixel_tail_index.unwrap().abs() < 0.004 && !error.has_heavy_tailed_pixels(), "{error:?}");
+    let mut sample = 0;
+    let film_of_finds = film(side, replicates, |_| {
+        sample += 1;
+        if sample % 4 == 0 { 1.0 } else { 0.0 }
+    });
+    let error = film_of_finds.error(whole(&film_of_finds)).unwrap();
+    assert_eq!(error.pixel_tail_index, Some(1.0));
+    assert!(error.has_heavy_tailed_pixels());
+    // A twentieth of the pixels are such: more than three standard errors above the bound.
+    let mut sample = 0;
+    let few = film(side, replicates, |pixel| {
+        sample += 1;
+        match pixel % 20 {
+            0 => 10.0 * f64::from(u8::from(sample % 4 == 0)),
+            _ => 5.0 + normal(),
+        }
+    });
+    let error = few.error(whole(&few)).unwrap();
+    assert!((error.pixel_tail_index.unwrap() - 0.05).abs() < 0.004 && error.has_heavy_tailed_pixels(), "{error:?}");
+}
