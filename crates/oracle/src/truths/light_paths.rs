@@ -1,7 +1,7 @@
 //! Floors lit by way of a mirror or a plate of glass, found by paths from the lamps and without them.
 
 use super::{
-    Truth,
+    Claim, Truth,
     scene::{Scene, black, block, glass, lambert, level_square, mirror, parallelogram, shown, sphere},
 };
 use crate::laws::fresnel_exact;
@@ -19,9 +19,10 @@ fn half_view() -> f64 {
 pub(super) fn truths() -> Vec<Truth> {
     WAYS.into_iter()
         .flat_map(|way| [by_a_mirror(way, false), through_a_plate(way), in_glass(way)])
+        .map(|truth| truth.claims(Claim::SpecularConnections))
         // Without light paths, few samples find the lamp.
         .chain([by_a_mirror("always", true)])
-        .chain([by_a_bent_mirror()])
+        .chain([by_a_bent_mirror().claims(Claim::SpecularConnections)])
         .collect()
 }
 
