@@ -324,6 +324,13 @@ pub(super) const COMMANDS: &[(&str, &[Named])] = &[
                 Script("docs/cycles-verify.py"),
             ),
             named(
+                "pbrt-verify",
+                "TRUTHS PICTURES [OPTIONS]",
+                "holds pbrt-v4 to the oracle's truths; needs the program pbrt",
+                "20 min",
+                Script("docs/pbrt-verify.py"),
+            ),
+            named(
                 "pbrt-twins",
                 "[OPTIONS] [NAME …]",
                 "scenes of pbrt by etalon against the same of Mitsuba by Mitsuba 3",
