@@ -195,7 +195,7 @@ fn write(folder: &Path, report: &StudyReport) -> Outcome {
         let plots = plots::of(study, &styles);
         let plots = plots.map_err(|error| Failure::run(miette!("cannot draw a plot: {error}")))?;
         let mut names = vec![format!("{}.png", study.scene)];
-        put(&names[0], pictures.reference())?;
+        put(&names[0], &pictures.reference)?;
         for plot in &plots {
             let name = format!("{}.svg", plot.name);
             put(&name, plot.svg.as_bytes())?;

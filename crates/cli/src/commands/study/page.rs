@@ -37,7 +37,7 @@ pub(super) fn html(report: &StudyReport, drawn: &[(Pictures, Vec<Plot>)]) -> Str
     );
     for (study, (pictures, _)) in report.scenes.iter().zip(drawn) {
         let (name, headline) = (escaped(&study.scene), escaped(&headline(study)));
-        let picture = image(pictures.reference(), &study.scene);
+        let picture = image(&pictures.reference, &study.scene);
         // Writing to a String cannot fail.
         let _ = writeln!(text, "<a href=\"#{name}\">{picture}<b>{name}</b><span>{headline}</span></a>");
     }
@@ -58,13 +58,13 @@ pub(super) fn html(report: &StudyReport, drawn: &[(Pictures, Vec<Plot>)]) -> Str
     text
 }
 
-/// A scene: what it costs in a few words, its picture after more and more samples, plots, and all numbers folded away.
+/// A scene: what it costs in a few words, the middle of its picture after more and more samples, plots, and all numbers folded away.
 fn scene(text: &mut String, study: &SceneStudy, pictures: &Pictures, plots: &[Plot]) {
     let name = escaped(&study.scene);
     let _ =
         writeln!(text, "<h2 id=\"{name}\">{name}</h2>\n<p>{}</p>\n<div class=\"strip\">", escaped(&headline(study)));
     let last = study.pictures.len() - 1;
-    for (place, (stage, png)) in study.pictures.iter().zip(&pictures.png).enumerate() {
+    for (place, (stage, png)) in study.pictures.iter().zip(&pictures.middles).enumerate() {
         let caption = caption(stage, place == last);
         let alt = format!("{} after {} samples a pixel", study.scene, stage.samples);
         let _ = writeln!(text, "<figure>{}<figcaption>{caption}</figcaption></figure>", image(png, &alt));

@@ -1,6 +1,6 @@
 //! The plots of a study, as SVG.
 
-use plotters::element::DashedPathElement;
+use plotters::element::{DynElement, IntoDynElement};
 use plotters::prelude::*;
 
 use super::measure::{Row, SceneStudy};
@@ -18,10 +18,7 @@ const COLOURS: [RGBColor; 6] = [
 /// Pixels; narrow enough for the labels to be read on a phone.
 const SIZE: (u32, u32) = (460, 380);
 
-/// Lengths of dashes and gaps, pixels. A line without gaps is whole.
-const DASHES: [(u32, u32); 5] = [(24, 0), (9, 4), (3, 3), (16, 4), (9, 9)];
-
-/// How each choice of a report is drawn: the same in all of its plots. After colours come dashes.
+/// How each choice of a report is drawn: the same in all of its plots. Where colours repeat, the marks differ.
 pub(super) struct Styles(Vec<String>);
 
 impl Styles {
@@ -38,13 +35,11 @@ impl Styles {
         Self(choices)
     }
 
-    fn find(&self, choice: &str) -> (ShapeStyle, (u32, u32)) {
+    /// The line of a choice, and the number of its mark.
+    fn find(&self, choice: &str) -> (ShapeStyle, usize) {
         match self.0.iter().position(|other| other == choice) {
-            None => (BLACK.stroke_width(3), DASHES[0]),
-            Some(place) => {
-                let dashes = DASHES[place / COLOURS.len() % DASHES.len()];
-                (COLOURS[place % COLOURS.len()].stroke_width(2), dashes)
-            }
+            None => (BLACK.stroke_width(3), 0),
+            Some(place) => (COLOURS[place % COLOURS.len()].stroke_width(2), place / COLOURS.len()),
         }
     }
 }
@@ -130,16 +125,12 @@ fn curves(title: &str, baseline: &Row, rows: &[&Row], styles: &Styles) -> Drawn<
             .y_label_formatter(&|y| format!("{} %", plain(100.0 * y)))
             .draw()?;
         for row in all {
-            let (style, (dash, gap)) = styles.find(&row.choice);
+            let (style, number) = styles.find(&row.choice);
             let line = points(row);
-            let drawn = match gap {
-                0 => chart.draw_series(LineSeries::new(line.clone(), style))?,
-                _ => chart.draw_series(DashedLineSeries::new(line.clone(), dash, gap, style))?,
-            };
-            drawn
-                .label(row.choice.clone())
-                .legend(move |(x, y)| DashedPathElement::new([(x, y), (x + 24, y)].into_iter(), dash, gap, style));
-            chart.draw_series(line.into_iter().map(|p| Circle::new(p, 3, style.color.filled())))?;
+            chart.draw_series(LineSeries::new(line.clone(), style))?.label(row.choice.clone()).legend(move |(x, y)| {
+                EmptyElement::at((x, y)) + PathElement::new([(0, 0), (24, 0)], style) + mark(number, (12, 0), style)
+            });
+            chart.draw_series(line.into_iter().map(|at| EmptyElement::at(at) + mark(number, (0, 0), style)))?;
         }
         chart
             .configure_series_labels()
@@ -151,6 +142,17 @@ fn curves(title: &str, baseline: &Row, rows: &[&Row], styles: &Styles) -> Drawn<
         root.present()?;
     }
     Ok(svg)
+}
+
+/// A mark at a place, pixels from its element: a disk, a triangle, a cross or a ring.
+fn mark<D: DrawingBackend>(number: usize, at: (i32, i32), line: ShapeStyle) -> DynElement<'static, D, (i32, i32)> {
+    let (filled, thin) = (line.color.filled(), ShapeStyle { stroke_width: 2, ..line });
+    match number % 4 {
+        0 => Circle::new(at, 3, filled).into_dyn(),
+        1 => TriangleMarker::new(at, 5, filled).into_dyn(),
+        2 => Cross::new(at, 4, thin).into_dyn(),
+        _ => Circle::new(at, 4, thin).into_dyn(),
+    }
 }
 
 /// What each effect adds to the time of a sample, and what else a choice costs or saves.

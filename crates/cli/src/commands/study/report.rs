@@ -92,8 +92,14 @@ pub(super) fn headline(study: &SceneStudy) -> String {
         (None, Some(error)) => format!("{} error after {}.", percent(error), duration(baseline.seconds)),
         (None, None) => return "No error was found.".to_owned(),
     };
+    if study.reference.heavy_tailed {
+        return format!("{cost} Rare bright paths cause most of the error, so choices cannot be compared well.");
+    }
     let compared = |row: &&Row| {
-        SAME_PICTURE.contains(&row.group) && row.choice != "three channels (RGB)" && row.z.is_none_or(|z| z.abs() < 4.0)
+        SAME_PICTURE.contains(&row.group)
+            && row.choice != "three channels (RGB)"
+            && row.z.is_none_or(|z| z.abs() < 4.0)
+            && row.error.is_some_and(|error| error > ROUNDING)
     };
     // Time to the same error, over that of the scene as it is.
     let ratio = |row: &Row| Some(baseline.efficiency? / row.efficiency?);
@@ -111,11 +117,11 @@ pub(super) fn headline(study: &SceneStudy) -> String {
     {
         said.push(format!("Worst: {choice}, {} times as long.", two_digits(ratio)));
     }
-    if study.reference.heavy_tailed {
-        said.push("Rare bright paths make these numbers inaccurate.".to_owned());
-    }
     said.join(" ")
 }
+
+/// Errors below this are of rounding, not of chance: a choice without noise has no time to an error.
+const ROUNDING: f64 = 1e-6;
 
 /// Ratios of times nearer to 1 are not worth a sentence.
 const NOTABLE: f64 = 1.1;
