@@ -163,7 +163,7 @@ def main():
         print(f"{picture.name}: {cost}", flush=True)
         receipts[picture.name] = {"error": error, "time": args.time, "cost": cost}
         kept.write_text(json.dumps(receipts, indent=2, ensure_ascii=False, sort_keys=True) + "\n")
-        write_page(receipts)
+    write_page(receipts)
 
 
 def write_page(receipts):
