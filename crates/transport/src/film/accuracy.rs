@@ -230,8 +230,10 @@ impl ErrorSum {
 
     /// See [`ImageError::pixel_tail_index`].
     pub fn pixel_tail_index(&self) -> Option<f64> {
-        let share = self.alone as f64 / self.grouped as f64;
-        (self.grouped > 0).then(|| (share - ALONE_BY_CHANCE) / (1.0 - ALONE_BY_CHANCE))
+        (self.grouped > 0).then(|| {
+            let share = self.alone as f64 / self.grouped as f64;
+            (share - ALONE_BY_CHANCE) / (1.0 - ALONE_BY_CHANCE)
+        })
     }
 
     /// Mean Y of the pixels that are known.

@@ -273,6 +273,7 @@ pub(super) fn markdown(report: &StudyReport, files: &[(String, Vec<String>)]) ->
 
 #[cfg(test)]
 mod tests {
+    use super::super::measure::Reference;
     use super::*;
 
     fn points(constant: f64, slope: f64) -> Vec<Point> {
@@ -294,6 +295,69 @@ mod tests {
         let ratio = time_ratio(&points(1.0, 0.5), &points(1.1, 0.5)).unwrap();
         assert!((ratio - 1.0 / 1.21).abs() < 1e-9, "{ratio}");
         assert_eq!(time_ratio(&points(0.0, 0.5), &points(0.0, 0.5)), None);
+    }
+
+    /// A choice of this group and name, whose efficiency is this many times that of the scene as it is.
+    fn choice(group: &'static str, name: &str, efficiency: f64) -> Row {
+        let points = points(0.8, 0.5);
+        let last = points[2];
+        Row {
+            group,
+            choice: name.to_owned(),
+            seconds: last.seconds,
+            samples: last.samples,
+            rays_per_path: 2.0,
+            shadow_rays_per_path: 1.0,
+            error: last.error,
+            scatter: last.scatter,
+            efficiency: Some(efficiency),
+            relative_cost: 1.0,
+            bias: Some(0.0),
+            z: Some(0.5),
+            slope: Some(0.5),
+            points,
+            approximations: Vec::new(),
+        }
+    }
+
+    /// Errors are 40, 20 and 10 % after 0.4, 1.6 and 6.4 s.
+    #[test]
+    fn a_headline_states_the_cost_and_the_choices_that_change_it_most() {
+        let biased = Row { z: Some(9.0), ..choice("roulette", "no roulette", 50.0) };
+        let without_noise = Row { error: Some(1e-9), ..choice("direct light", "lights only", 1e12) };
+        let mut study = SceneStudy {
+            scene: "box".to_owned(),
+            width: 8,
+            height: 8,
+            truth: None,
+            reference: Reference {
+                samples: 64,
+                seconds: 1.0,
+                mean_y: 1.0,
+                relative_rmse: Some(0.01),
+                heavy_tailed: false,
+            },
+            rows: vec![
+                choice("baseline", "as it is", 1.0),
+                choice("where samples go", "adaptive", 4.0),
+                choice("sampler", "independent numbers", 0.5),
+                // Each of these makes another picture, or has no noise.
+                choice("wavelengths", "three channels (RGB)", 8.0),
+                choice("effects", "without lens", 9.0),
+                biased,
+                without_noise,
+            ],
+            pictures: Vec::new(),
+        };
+        assert_eq!(
+            headline(&study),
+            "10 % error after 6.4 s. Best change: adaptive, 0.25 of the time for the same error. \
+             Worst: independent numbers, 2.0 times as long."
+        );
+        study.rows.truncate(1);
+        assert_eq!(headline(&study), "10 % error after 6.4 s.");
+        study.reference.heavy_tailed = true;
+        assert!(headline(&study).ends_with("choices cannot be compared well."));
     }
 
     #[test]

@@ -234,8 +234,7 @@ fn measured(
     interrupt: &Interrupt,
 ) -> Result<(Reading, u32), Stop> {
     let truth = measurement.truth;
-    let sees = if args.names.contains(&truth.name) { THOROUGH_SEES_BY_NAME } else { THOROUGH_SEES };
-    let wanted = sees * truth.value().abs();
+    let wanted = thorough_sees(&args.names, truth) * truth.value().abs();
     let (mut step, mut seen_before) = (0, f64::INFINITY);
     loop {
         let reading = measurement.render_to(MORE.pow(step), significance, interrupt)?;
@@ -251,6 +250,11 @@ fn measured(
         }
         (step, seen_before) = (step + 1, seen);
     }
+}
+
+/// What a thorough run of these names wants to see of a truth, relative. A name that is only a part of the truth's asks for a group.
+fn thorough_sees(names: &[String], truth: &Truth) -> f64 {
+    if names.contains(&truth.name) { THOROUGH_SEES_BY_NAME } else { THOROUGH_SEES }
 }
 
 /// Whether a thorough run goes on that saw `seen` by this many rays, and `before` by the step before. Up to [`THOROUGH_RAYS`] it does, as
@@ -272,6 +276,15 @@ fn is_worth_more(mut rays: u64, before: f64, seen: f64, wanted: f64) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use etalon_oracle::truths::truths;
+
+    #[test]
+    fn a_thorough_run_sees_most_where_a_whole_name_is_given() {
+        let truth = truths().into_iter().find(|truth| truth.name == "eye-in-glass").expect("there is such a truth");
+        let sees = |name: &str| thorough_sees(&[name.to_owned()], &truth);
+        assert_eq!(sees("eye-in-glass"), 2e-4);
+        assert_eq!([sees("eye"), thorough_sees(&[], &truth)], [2e-3; 2]);
+    }
 
     #[test]
     fn a_thorough_run_spends_rays_where_they_will_show_what_it_wants_to_see() {

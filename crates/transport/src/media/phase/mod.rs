@@ -86,12 +86,12 @@ impl Phase {
         (wi, self.density(-wo.dot(wi)))
     }
 
-    /// As [`Phase::sample`], for a path that carries polarisation. Light of some polarisation is worth more than other light to what the path
-    /// comes from; `worth` says which. Directions are drawn by what unpolarised light from there is worth. Returns, too, the density over
-    /// that of [`Phase::sample`].
+    /// As [`Phase::sample`], for a path that carries polarisation. Returns a direction, the value of the phase function there, sr⁻¹, and the
+    /// density of the direction over that value.
     ///
-    /// The angle between the directions is drawn as ever. Around `wo` the worth goes as 1 − k cos 2ψ, with ψ from where it is least
-    /// (Chandrasekhar, *Radiative Transfer*, §17): its distribution is Kepler's equation in 2ψ.
+    /// Light of one polarisation is worth more to the camera than light of another, and `worth` says how much more. Directions are drawn by
+    /// what unpolarised light that comes from them is worth. The angle of scattering is drawn as without polarisation. Around `wo` the worth goes
+    /// as 1 − k cos 2ψ, where ψ is the angle from the least worth. So 2ψ is drawn by Kepler's equation.
     pub(crate) fn sample_polarised(&self, wo: Vec3<f64>, worth: &LinearWorth, u: [f64; 2]) -> (Vec3<f64>, f64, f64) {
         let cos = self.cosine(u[0]).clamp(-1.0, 1.0);
         let Some(matrix) = self.matrix(cos) else {
@@ -102,7 +102,7 @@ impl Phase {
         let degree = s1.hypot(s2);
         // At most 1 but for rounding: no light is more than fully polarised.
         let k = degree.min(1.0);
-        // Half the angle at which (s1, s2) stands.
+        // The direction of least worth: it stands at half the angle of (s1, s2).
         let least = match degree > 0.0 {
             true if s1 >= 0.0 => [degree + s1, s2],
             true => [s2.abs(), (degree - s1).copysign(s2)],
