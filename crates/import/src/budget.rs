@@ -62,12 +62,25 @@ impl BlendSize {
     /// That of a material that is no blend.
     pub(crate) const ONE: Self = Self { parts: 1, depth: 0 };
 
+    /// That of a material of the format.
+    pub(crate) fn of(material: &Value) -> Self {
+        if material["type"] != "blend" {
+            return Self::ONE;
+        }
+        let [first, second] = ["first", "second"].map(|part| Self::of(&material[part]));
+        first.beside(second)
+    }
+
+    fn beside(self, other: Self) -> Self {
+        Self { parts: self.parts + other.parts, depth: 1 + self.depth.max(other.depth) }
+    }
+
     /// That of a blend of two materials.
     ///
     /// # Errors
     /// If a scene cannot hold it.
     pub(crate) fn blend(self, other: Self, place: &str) -> Result<Self, String> {
-        let size = Self { parts: self.parts + other.parts, depth: 1 + self.depth.max(other.depth) };
+        let size = self.beside(other);
         if size.parts > MOST_BLEND_PARTS || size.depth > MAX_BLENDS {
             let Self { parts, depth } = size;
             return Err(format!(

@@ -37,9 +37,14 @@ impl Checker {
         [0, 1, 2].map(|c| 0.5 * (first[c] + second[c]))
     }
 
-    /// As numbers from 0 to 1, which are an image of their own in steps of 1/65535. A colour counts by its luminance.
+    /// The numbers of both fields. A colour counts by its luminance.
+    pub(crate) fn fields(&self) -> [f64; 2] {
+        self.colours.map(|rgb| if rgb == [rgb[0]; 3] { rgb[0] } else { rec709_luminance(rgb) })
+    }
+
+    /// As numbers from 0 to 1, which are an image of their own in steps of 1/65535.
     pub(crate) fn numbers(&self, builder: &mut Builder<'_>) -> Number {
-        let [first, second] = self.colours.map(rec709_luminance);
+        let [first, second] = self.fields();
         if first == second {
             return Number::Value(first);
         }

@@ -83,19 +83,34 @@ pub(crate) fn blended(first: &Value, second: &Value, weight: f64) -> Option<Valu
     Some(json!({ "type": "double-henyey-greenstein", "g": [first, second], "weight": 1.0 - weight }))
 }
 
-/// Fills the interior of a material with a medium: glass, or the boundary of the medium. False if the material has no interior.
-pub(crate) fn fill(material: &mut Value, opacity: &mut f64, medium: &Value) -> bool {
-    if material["type"] == "dielectric" {
+/// Fills the interior of a body with a medium: that of glass, of the boundary of the medium, or of a filled body of another material. A body
+/// that lets no light in stays as it is; false of such a one. `has_holes` says whether an image is its opacity.
+pub(crate) fn fill(material: &mut Value, opacity: &mut f64, has_holes: bool, medium: &Value) -> bool {
+    let lets_by = *opacity < 1.0 || has_holes;
+    if material["type"] == "black" && *opacity == 0.0 {
+        *material = json!({ "type": "boundary", "medium": medium });
+        *opacity = 1.0;
+    } else if material["type"] == "dielectric" {
         if let Some(keys) = material.as_object_mut() {
             keys.remove("absorption_per_m");
             keys.insert("medium".to_owned(), medium.clone());
         }
-        return true;
+    } else if lets_by || has_inside(material) {
+        *material = json!({ "type": "filled", "material": material.take(), "medium": medium });
+    } else {
+        return false;
     }
-    if material["type"] == "black" && *opacity == 0.0 {
-        *material = json!({ "type": "boundary", "medium": medium });
-        *opacity = 1.0;
-        return true;
+    true
+}
+
+/// Whether a path may be behind the surface of a material: it lets light in, or it scatters light there.
+fn has_inside(material: &Value) -> bool {
+    match material["type"].as_str() {
+        Some("blend") => has_inside(&material["first"]) || has_inside(&material["second"]),
+        Some("black") => false,
+        Some("lambert" | "mirror" | "conductor" | "plastic" | "principled" | "measured" | "oren-nayar") => {
+            material["sides"] != "front"
+        }
+        _ => true,
     }
-    false
 }

@@ -49,7 +49,7 @@ mod texture;
 use std::path::Path;
 
 pub use files::{FileUse, MAX_FILE_BYTES, NamedFile, read_file};
-pub use format::MOST_BLEND_PARTS;
+pub use format::{MOST_BLEND_PARTS, MOST_WIDTHS};
 pub use luminaire::Photometry;
 pub use measured::{
     MeasuredArray, MeasuredArrays, MeasuredBrdf, MeasuredSurface, Slices, Symmetry, Table, Warp, read_measured,

@@ -47,7 +47,7 @@ pub use meter::{Meter, MeterKind, MeterQuantity, Receiver};
 pub use motion::{CameraMotion, Keyframe, Motion};
 pub use parameter::{Parameter, ParameterMut};
 pub use references::ReferenceError;
-pub use shape::{Mesh, Shape};
+pub use shape::{DiskCoordinates, Mesh, Shape};
 pub(crate) use shutter::middle_s;
 pub use sky::{CieSky, Perez, SkyCoefficients};
 pub use slide::{EvenOn, SlideLight};

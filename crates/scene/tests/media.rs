@@ -42,6 +42,44 @@ fn tables_of_phase_functions_are_whole_and_possible() {
     assert!(etalon_scene::parse(&with_table(&right), "test.json").is_ok());
 }
 
+/// What fills a body must not contradict what the body says itself.
+#[test]
+fn a_body_is_filled_once() {
+    let medium = r#"{"absorption_per_m": 1}"#;
+    let with = |of: &str| {
+        let materials = format!(
+            "{{\"white\": {{\"type\": \"lambert\", \"reflectance\": 0.5}}, \"m\": {{\"type\": \"filled\", \"material\": {of}, \"medium\": {medium}}}}}"
+        );
+        etalon_scene::parse(&Parts { materials: &materials, ..RIGHT }.text(), "test.json")
+    };
+    for (of, code, says) in [
+        (
+            format!(r#"{{"type": "dielectric", "interior": 1.5, "medium": {medium}}}"#),
+            Code::KeyConflict,
+            "already holds",
+        ),
+        (
+            r#"{"type": "dielectric", "interior": 1.5, "absorption_per_m": 1}"#.to_owned(),
+            Code::KeyConflict,
+            "already holds",
+        ),
+        (format!(r#"{{"type": "boundary", "medium": {medium}}}"#), Code::KeyConflict, "already holds"),
+        (r#"{"type": "dielectric", "interior": 1.5, "priority": 1}"#.to_owned(), Code::KeyConflict, "\"priority\""),
+        (r#""black""#.to_owned(), Code::UnknownName, "black"),
+        (r#""m""#.to_owned(), Code::Circular, "defined after it"),
+    ] {
+        let errors = with(&of).map(|_| ()).expect_err(says);
+        assert!(errors.problems.iter().any(|p| p.code == code && p.message.contains(says)), "{of}: {errors}");
+    }
+    for of in [
+        r#""white""#,
+        r#"{"type": "dielectric", "interior": 1.5}"#,
+        r#"{"type": "blend", "first": "white", "second": {"type": "black"}, "weight": 0.5}"#,
+    ] {
+        assert!(with(of).is_ok(), "{of}");
+    }
+}
+
 /// A grid of two cells, one above the other, from (0, 0, 0) to (1, 1, 2).
 fn vol(channels: i32, values: &[f32]) -> Vec<u8> {
     let head = [1, 1, 1, 2, channels].into_iter().flat_map(i32::to_le_bytes);

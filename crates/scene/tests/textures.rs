@@ -240,12 +240,14 @@ fn numbers_and_colours_of_materials_come_from_images() {
     assert!((film.layers[0].thickness_nm.eval([0.75, 0.75]) - 400.0 * 60.0 / 255.0).abs() < 1e-4, "{film:?}");
     assert!(kind.image().is_some());
     // Behind a tint, too.
-    for (kind, key) in
-        [("conductor\", \"metal\": \"Ag", "reflected_tint"), ("dielectric\", \"interior\": \"1.5", "transmitted_tint")]
-    {
+    for (kind, key) in [
+        ("conductor\", \"metal\": \"Ag", "reflected_tint"),
+        ("dielectric\", \"interior\": \"1.5", "transmitted_tint"),
+        ("plastic\", \"reflectance\": \"1.5", "reflected_tint"),
+    ] {
         let text =
             format!(r#"{{"type": "{kind}", "roughness_image": {{"file": "files/chequers.png"}}, "{key}": 0.5}}"#);
-        let text = text.replace("\"1.5\"", "1.5");
+        let text = text.replace("interior\": \"1.5\"", "interior\": 1.5").replace("\"1.5\"", "0.5");
         assert!(right(&text).image().is_some(), "{text}");
         let bare = r#"{"type": "box", "min_m": [0, 0, 0], "max_m": [1, 1, 1]}"#;
         assert!(material(&text, bare).is_err(), "{text}");

@@ -67,11 +67,13 @@ impl Walk<'_, '_, '_> {
             }
             return Ok(Some(Number::Image(image, rec709_luminance(mean.unwrap_or([0.0; 3])))));
         }
-        if target.tag == "texture" && target.plugin() == "checkerboard" && of == Of::Reflectance {
+        if target.tag == "texture" && target.plugin() == "checkerboard" {
             target.mark();
-            let board = self.checkerboard(target, of)?;
+            let mut board = self.checkerboard(target, of)?;
             target.list_unused(self.builder);
-            return Ok(Some(board.numbers(self.builder)));
+            // Mitsuba 3.9 lays numbers the other way round than colours.
+            board.colours.swap(0, 1);
+            return Ok(Some(self.field_of(&board)));
         }
         let value = self.colour_of(stated, of)?;
         Ok(Some(Number::Value(match value.as_f64() {

@@ -1,8 +1,8 @@
 //! Texture coordinates of Mitsuba's round shapes and cubes.
 //!
 //! Those of a rectangle are ours. A sphere's run from the pole +z: u around it from +x, v down to −z. A cylinder's u runs around the axis from
-//! the first direction across it. Both are ours after a turn, the sphere's with v turned over. A disk's are polar, and a cube has a
-//! square on each face: these become meshes.
+//! the first direction across it. Both are ours after a turn, the sphere's with v turned over. A disk's are polar. A cube has a square on each face:
+//! it becomes a mesh.
 
 use std::f64::consts::PI;
 
@@ -13,18 +13,12 @@ use serde_json::{Map, Value, json};
 use super::Walk;
 use super::shape::{Dressed, Reach};
 use crate::number::{has_directions, has_image};
-use crate::round::{DISK_OF_TRIANGLES, disk, sphere_turn};
+use crate::round::sphere_turn;
 use crate::uv;
 
 impl Walk<'_, '_, '_> {
     /// A shape of the format and the box around it, with the texture coordinates of Mitsuba's shape if anything of the object follows them.
-    pub(super) fn with_coordinates(
-        &mut self,
-        dressed: &mut Dressed,
-        shape: Value,
-        reach: Reach,
-        place: &str,
-    ) -> (Value, Reach) {
+    pub(super) fn with_coordinates(&mut self, dressed: &mut Dressed, shape: Value, reach: Reach) -> (Value, Reach) {
         let named = dressed.look.material.as_str().and_then(|name| self.builder.materials.get(name));
         let material = named.unwrap_or(&dressed.look.material).clone();
         let follows = has_image(&material)
@@ -54,8 +48,9 @@ impl Walk<'_, '_, '_> {
                 (along_z, [[-r, -r, 0.0], [r, r, length]])
             }
             Some("disk") if follows => {
-                self.builder.approximate(place, DISK_OF_TRIANGLES);
-                (self.own_mesh(&disk()), reach)
+                let mut polar = shape;
+                polar["coordinates"] = json!("polar");
+                (polar, reach)
             }
             Some("box") if follows => (self.own_mesh(&cube()), reach),
             _ => (shape, reach),
@@ -120,6 +115,7 @@ mod tests {
     use std::f64::consts::TAU;
 
     use super::*;
+    use crate::round::disk;
 
     #[test]
     fn a_disk_and_a_cube_face_outward_and_have_their_areas() {

@@ -12,8 +12,6 @@ use crate::number::{Number, Rough};
 use crate::relief::{has_map, without_map};
 use crate::sides::change_sides;
 use crate::table::{Table, metal};
-use crate::translucent::scaled;
-use etalon_optics::fresnel;
 use etalon_scene::{Symmetry, read_measured};
 
 /// Indices of refraction that Mitsuba has names for, as its documentation lists them.
@@ -152,15 +150,9 @@ impl Walk<'_, '_, '_> {
                 Look { size, ..Look::plain(material, (1.0 - mean) * first.opacity + mean * second.opacity) }
             }
             plugin => {
-                let mut material = self.material(element, plugin, &place)?;
-                // What reflects only is black from behind there.
-                if matches!(
-                    plugin,
-                    "diffuse" | "conductor" | "roughconductor" | "plastic" | "roughplastic" | "pplastic" | "measured"
-                ) {
-                    material["sides"] = json!("front");
-                }
-                Look::of(material)
+                let material = self.varying(element, plugin)?;
+                let size = BlendSize::of(&material);
+                Look { size, ..Look::of(material) }
             }
         };
         element.list_unused(self.builder);
@@ -179,8 +171,10 @@ impl Walk<'_, '_, '_> {
         }
     }
 
-    fn material(&mut self, element: &Element, plugin: &str, place: &str) -> Result<Value, String> {
-        Ok(match plugin {
+    /// A material whose numbers are the same everywhere, or images.
+    pub(super) fn material(&mut self, element: &Element, plugin: &str) -> Result<Value, String> {
+        let place = &element.place;
+        let mut material = match plugin {
             "diffuse" => {
                 let reflectance = self.colour(element, "reflectance", Of::Texture)?.unwrap_or(json!(0.5));
                 json!({ "type": "lambert", "reflectance": reflectance })
@@ -206,7 +200,7 @@ impl Walk<'_, '_, '_> {
             "plastic" | "roughplastic" => {
                 let reflectance = self.colour(element, "diffuse_reflectance", Of::Texture)?.unwrap_or(json!(0.5));
                 let coat = self.index(element, "int_ior", 1.49)? / self.index(element, "ext_ior", 1.000_277)?;
-                self.untinted(element, &["specular_reflectance"])?;
+                let tint = self.colour(element, "specular_reflectance", Of::Texture)?;
                 if plugin == "roughplastic" {
                     let what = "the rough coat loses no light, unlike Mitsuba's: at an alpha of 0.2 over a base of 0.5 it is 2 to 26 % \
                                 brighter";
@@ -216,6 +210,7 @@ impl Walk<'_, '_, '_> {
                 let internal_reflection = if nonlinear { "coloured" } else { "uncoloured" };
                 let mut plastic = json!({ "type": "plastic", "reflectance": reflectance, "coat": coat,
                     "internal_reflection": internal_reflection });
+                put_tint(&mut plastic, "reflected_tint", tint);
                 if plugin == "roughplastic" {
                     self.put_facets(element, &mut plastic)?;
                 }
@@ -230,20 +225,24 @@ impl Walk<'_, '_, '_> {
                 element.children.iter().for_each(Element::mark);
                 grey()
             }
-        })
+        };
+        // What reflects only is black from behind there.
+        if matches!(
+            plugin,
+            "diffuse" | "conductor" | "roughconductor" | "plastic" | "roughplastic" | "pplastic" | "measured"
+        ) {
+            material["sides"] = json!("front");
+        }
+        Ok(material)
     }
 
-    /// Rough plastic whose light is lost if it is reflected down again below the coat.
+    /// Rough plastic whose light is lost if it is reflected down again below the coat. It enters and leaves as through a smooth coat.
     fn polarised_plastic(&mut self, element: &Element) -> Result<Value, String> {
         let reflectance = self.colour(element, "diffuse_reflectance", Of::Texture)?.unwrap_or(json!(0.5));
         let coat = self.index(element, "int_ior", 1.49)? / self.index(element, "ext_ior", 1.000_277)?;
-        self.untinted(element, &["specular_reflectance"])?;
-        let what = "\"pplastic\" becomes a rough coat over a base: there light enters and leaves as through a smooth coat, here through its facets";
-        self.builder.approximate(&element.place, what);
-        // Of a base that colours light once T T ρ/(π T_avg) leaves, of this one T T ρ/π.
-        let reflectance = scaled(reflectance, diffuse_transmittance(coat));
-        let mut plastic = json!({ "type": "plastic", "reflectance": reflectance, "coat": coat,
-            "internal_reflection": "uncoloured" });
+        let mut plastic =
+            json!({ "type": "plastic", "reflectance": reflectance, "coat": coat, "internal_reflection": "lost" });
+        put_tint(&mut plastic, "reflected_tint", self.colour(element, "specular_reflectance", Of::Texture)?);
         self.put_facets(element, &mut plastic)?;
         Ok(plastic)
     }
@@ -333,15 +332,6 @@ impl Walk<'_, '_, '_> {
         Ok(())
     }
 
-    fn untinted(&mut self, element: &Element, names: &[&str]) -> Result<(), String> {
-        for name in names {
-            if self.colour(element, name, Of::Reflectance)?.is_some_and(|tint| tint != json!(1.0)) {
-                self.builder.leave_out(&element.place, format!("{name} is ignored"));
-            }
-        }
-        Ok(())
-    }
-
     fn index(&mut self, element: &Element, name: &str, default: f64) -> Result<f64, String> {
         let Some(property) = element.property(name) else { return Ok(default) };
         let text = property.attribute("value").unwrap_or("").trim();
@@ -372,6 +362,11 @@ impl Walk<'_, '_, '_> {
         let both = (self.number(element, "alpha_u")?, self.number(element, "alpha_v")?);
         let alpha = match (self.number(element, "alpha")?, both) {
             (_, (Some(u), Some(v))) => {
+                if let (Number::Image(image, _), Number::Image(other, _)) = (&u, &v)
+                    && image == other
+                {
+                    return Ok(Rough::image(image.clone(), "alpha"));
+                }
                 let (u, v) = (u.mean("alpha_u", place, self.builder), v.mean("alpha_v", place, self.builder));
                 return Ok(Rough::widths([u, v]));
             }
@@ -389,15 +384,4 @@ fn put_tint(material: &mut Value, key: &str, tint: Option<Value>) {
     if let Some(tint) = tint.filter(|tint| *tint != json!(1.0)) {
         material[key] = tint;
     }
-}
-
-/// The share of diffuse light that a smooth interface of this relative index lets in: ∫2µT(µ)dµ.
-fn diffuse_transmittance(eta: f64) -> f64 {
-    // The midpoint rule errs by less than 1e-6.
-    const STEPS: u32 = 4096;
-    let at = |step: u32| {
-        let mu = (f64::from(step) + 0.5) / f64::from(STEPS);
-        2.0 * mu * (1.0 - fresnel::dielectric_reflectance(mu, eta).0) / f64::from(STEPS)
-    };
-    (0..STEPS).map(at).sum()
 }

@@ -17,12 +17,14 @@ mod sheet;
 mod slide;
 mod spot;
 mod transform;
+mod varying;
 
 use std::collections::HashMap;
 
 use super::Builder;
 use element::{Element, Ids, MAX_DEPTH, MAX_ELEMENTS};
 use material::Look;
+use varying::Choices;
 
 pub(super) fn import(bytes: &[u8], parameters: &[(String, String)], builder: &mut Builder<'_>) -> Result<(), String> {
     let root = element::read(bytes, parameters, builder)?;
@@ -41,6 +43,7 @@ pub(super) fn import(bytes: &[u8], parameters: &[(String, String)], builder: &mu
         named_looks: HashMap::new(),
         meshes: HashMap::new(),
         measured: HashMap::new(),
+        choices: Choices::default(),
         open: Vec::new(),
         entered: 0,
     };
@@ -59,6 +62,8 @@ struct Walk<'a, 'w, 'b> {
     meshes: HashMap<String, std::rc::Rc<shape::Mesh>>,
     /// Measured materials, by the names of their files.
     measured: HashMap<String, serde_json::Value>,
+    /// What has been chosen of the material that is being read.
+    choices: Choices,
     /// The elements that are being read, each within the one before.
     open: Vec<*const Element>,
     /// How many elements have been entered, each as often as it is.

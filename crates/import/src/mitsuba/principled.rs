@@ -74,9 +74,9 @@ impl Walk<'_, '_, '_> {
         let what = "\"principledthin\" becomes a diffuse sheet: its light is not brighter at grazing angles, and it is never clear";
         self.builder.approximate(place, what);
         let base = self.colour(element, "base_color", Of::Texture)?.unwrap_or(json!(0.5));
-        // From 0 to 2; a texture counts by its mean.
+        // From 0 to 2.
         let passes = self.number_of(element, "diff_trans", Of::Coefficient)?;
-        let passes = passes.map_or(0.0, |share| share.mean("diff_trans", place, self.builder));
+        let passes = passes.map_or(0.0, |share| self.linear(share, "diff_trans", place));
         let passed = 0.5 * passes.clamp(0.0, 2.0);
         if passed == 0.0 {
             return Ok(json!({ "type": "lambert", "reflectance": base }));
@@ -100,7 +100,6 @@ impl Walk<'_, '_, '_> {
                 Number::Value(share) => opaque["metallic"] = json!(share),
                 Number::Image(image, _) => opaque["metallic_image"] = image,
             }
-            self.builder.spend(&opaque, place)?;
             return Ok(opaque);
         }
         let rest = self.not_transmitting(&lobes, &transmits, place);
@@ -110,9 +109,7 @@ impl Walk<'_, '_, '_> {
             metal["metallic"] = json!(1);
             metal
         };
-        let made = mixed(mixed(rest, || lobes.glass(&tint), transmits), metal, metallic);
-        self.builder.spend(&made, place)?;
-        Ok(made)
+        Ok(mixed(mixed(rest, || lobes.glass(&tint), transmits), metal, metallic))
     }
 
     /// What does not transmit. In Mitsuba neither the coat nor the sheen is less where light is transmitted: here what is opaque has more of them.
@@ -141,8 +138,12 @@ impl Walk<'_, '_, '_> {
             let is_number =
                 element.property(name).is_some_and(|stated| stated.tag == "float" || stated.tag == "integer");
             let of = if is_number { Of::Coefficient } else { Of::Reflectance };
-            let number = self.number_of(element, name, of)?;
-            let number = number.map_or(0.0, |number| number.mean(name, place, self.builder));
+            let number = match self.number_of(element, name, of)? {
+                // The width of the coat's facets is the one that the surface is not linear in.
+                Some(number) if name == "clearcoat_gloss" => number.mean(name, place, self.builder),
+                Some(number) => self.linear(number, name, place),
+                None => 0.0,
+            };
             if number > most {
                 self.builder.approximate(place, format!("\"{name}\" of {number} becomes {most}"));
             }

@@ -11,6 +11,7 @@ use super::colour::kind;
 use super::element::Element;
 use super::material::{Look, grey};
 use super::serialized;
+use super::sheet::is_sheet;
 use crate::Placed;
 use crate::medium::fill;
 use crate::number::{WITHOUT_DIRECTIONS, has_image, has_measured_grain, without_directions};
@@ -173,12 +174,11 @@ impl<'a> Walk<'a, '_, '_> {
         if let Some(medium) = self.medium(element, "interior")? {
             let own = look.material.as_str().and_then(|name| self.builder.materials.get(name));
             let mut material = own.unwrap_or(&look.material).clone();
-            if fill(&mut material, &mut look.opacity, &medium) {
+            if is_sheet(&material) {
+                self.builder.leave_out(&element.place, "the medium of a polarising sheet is left out");
+            } else if fill(&mut material, &mut look.opacity, look.detail.contains_key("opacity_image"), &medium) {
                 self.builder.spend(&material, &element.place)?;
                 look.material = material;
-            } else {
-                let what = "its medium is left out: only glass and \"null\" let light in";
-                self.builder.leave_out(&element.place, what);
             }
         }
         Ok(look)
@@ -186,7 +186,7 @@ impl<'a> Walk<'a, '_, '_> {
 
     fn analytic(&mut self, mut dressed: Dressed, shape: Value, reach: Reach, place: &str) -> Result<(), String> {
         self.resolve(&mut dressed, None, place);
-        let (shape, reach) = self.with_coordinates(&mut dressed, shape, reach, place);
+        let (shape, reach) = self.with_coordinates(&mut dressed, shape, reach);
         self.builder.place(&dressed.placed(shape, Some(reach)), place)
     }
 

@@ -98,7 +98,7 @@ impl Reading<'_, '_> {
         if let Some(medium) = self.state.inside.clone() {
             let own = material.as_str().and_then(|name| self.builder.materials.get(name)).unwrap_or(&material);
             let mut filled = own.clone();
-            if fill(&mut filled, &mut opacity, &medium) {
+            if fill(&mut filled, &mut opacity, detail.contains_key("opacity_image"), &medium) {
                 self.builder.spend(&filled, place)?;
                 material = filled;
             }

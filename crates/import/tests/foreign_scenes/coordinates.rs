@@ -1,6 +1,6 @@
 //! Images and directions on shapes of Mitsuba that have texture coordinates of another kind than ours.
 
-use etalon_scene::Shape;
+use etalon_scene::{DiskCoordinates, Shape};
 use serde_json::{Value, json};
 
 use super::{imported, said, scene};
@@ -31,16 +31,18 @@ fn images_keep_their_place_on_round_shapes() {
 }
 
 #[test]
-fn a_disk_and_a_cube_with_an_image_become_meshes() {
-    for (shape, listed) in [("disk", 1), ("cube", 0)] {
+fn disks_with_an_image_are_polar_and_cubes_become_meshes() {
+    for shape in ["disk", "cube"] {
         let imported = imported("xml", &of(shape, IMAGE));
-        let said = said(&imported);
-        assert_eq!(said.len(), listed, "{said:?}");
-        assert!(said.iter().all(|line| line.contains("polar")), "{said:?}");
-        assert!(matches!(scene(&imported).objects[0].shape, Shape::Mesh { .. }), "{shape}");
+        assert_eq!(said(&imported), Vec::<String>::new(), "{shape}");
+        match &scene(&imported).objects[0].shape {
+            Shape::Disk { coordinates, .. } => assert_eq!((*coordinates, shape), (DiskCoordinates::Polar, "disk")),
+            other => assert!(matches!(other, Shape::Mesh { .. }) && shape == "cube", "{other:?}"),
+        }
         // Without an image they stay what they are.
         let plain = super::imported("xml", &of(shape, ""));
-        assert_ne!(object(&plain.text)["shape"]["type"], "mesh");
+        let shape = &object(&plain.text)["shape"];
+        assert!(shape["type"] != "mesh" && shape.get("coordinates").is_none(), "{shape}");
     }
 }
 
@@ -65,7 +67,7 @@ fn an_image_moves_with_the_shape_and_what_else_is_laid_over_it() {
 #[test]
 fn brushed_round_shapes_keep_their_directions() {
     let brushed = "<bsdf type=\"roughconductor\"><float name=\"alpha_u\" value=\"0.1\"/><float name=\"alpha_v\" value=\"0.4\"/></bsdf>";
-    for shape in ["sphere", "cylinder", "cube"] {
+    for shape in ["sphere", "cylinder", "cube", "disk"] {
         let imported = imported("xml", &of(shape, brushed));
         assert_eq!(said(&imported), Vec::<String>::new(), "{shape}");
         assert_eq!(object(&imported.text)["material"]["alpha_u"], 0.1);

@@ -58,8 +58,42 @@ fn media_of_mitsuba_arrive() {
     // Backward is first there: −1, 0 and 1 are the cosines.
     assert_eq!(table.values, [1.0, 2.0, 5.0]);
     assert!((table.cosines[0], table.cosines[2]) == (-1.0, 1.0) && table.cosines[1].abs() < 1e-15, "{table:?}");
-    let said = said(&imported);
-    assert!(said.len() == 1 && said[0].contains("only glass and \"null\" let light in"), "{said:?}");
+    // Nothing of it comes out of a body that lets no light in.
+    assert!(scene.materials[scene.objects[3].material].medium.is_none());
+    assert_eq!(said(&imported), Vec::<String>::new());
+}
+
+/// What lets light in, or may be met from within, holds its medium.
+#[test]
+fn bodies_that_are_neither_glass_nor_null_hold_their_media() {
+    let medium = r#"<medium name="interior" type="homogeneous"><float name="albedo" value="0.5"/><float name="sigma_t" value="3"/></medium>"#;
+    let bodies = [
+        (r#"<bsdf type="principled"><float name="spec_trans" value="0.5"/></bsdf>"#, true),
+        (r#"<bsdf type="blendbsdf"><bsdf type="dielectric"/><bsdf type="diffuse"/></bsdf>"#, true),
+        (r#"<bsdf type="thindielectric"/>"#, true),
+        (r#"<bsdf type="mask"><float name="opacity" value="0.5"/><bsdf type="diffuse"/></bsdf>"#, true),
+        (r#"<bsdf type="twosided"><bsdf type="diffuse"/></bsdf>"#, true),
+        (r#"<bsdf type="principled"><float name="metallic" value="0.5"/></bsdf>"#, false),
+        (r#"<bsdf type="roughplastic"/>"#, false),
+    ];
+    for (bsdf, holds) in bodies {
+        let text = format!(
+            r#"<scene version="3.0.0"><sensor type="perspective"/><shape type="sphere">{bsdf}{medium}</shape></scene>"#
+        );
+        let imported = imported("xml", &text);
+        let scene = scene(&imported);
+        let found = scene.materials[scene.objects[0].material].medium.is_some();
+        assert_eq!(found, holds, "{bsdf}");
+        assert!(said(&imported).iter().all(|what| !what.contains("medium")), "{:?}", said(&imported));
+        if holds {
+            near(coefficients(within(&scene, 0), 500.0), [1.5, 1.5]);
+        }
+    }
+    let sheet =
+        format!(r#"<scene version="3.0.0"><shape type="rectangle"><bsdf type="polarizer"/>{medium}</shape></scene>"#);
+    let imported = imported("xml", &sheet);
+    scene(&imported);
+    assert!(said(&imported).iter().any(|what| what.contains("medium of a polarising sheet")), "{:?}", said(&imported));
 }
 
 /// A heterogeneous medium ends where its volume does, which is the box from 0 to 1, even if it is the same everywhere in it.

@@ -18,6 +18,7 @@ mod slides;
 mod spots;
 mod tints;
 mod translucent;
+mod varying;
 mod vertex_colours;
 
 use etalon_import::{Imported, import_bytes};

@@ -16,6 +16,7 @@ use crate::{
 pub(super) fn truths() -> Vec<Truth> {
     let mut list = plates();
     list.extend([ball_without_refraction(), ball_of_glass(), eye_within(), lamp_within()]);
+    list.extend(filled());
     list.into_iter().map(|truth| truth.claims(Claim::Absorption)).collect()
 }
 
@@ -76,6 +77,50 @@ fn plates() -> Vec<Truth> {
         list.push(truth);
     }
     list
+}
+
+/// Bodies of other materials than glass, before a lamp of radiance 1.
+fn filled() -> Vec<Truth> {
+    const THICKNESS_M: f64 = 0.5;
+    const PER_M: f64 = 2.0;
+    const SHARE: f64 = 0.75;
+    let tau = (-PER_M * THICKNESS_M).exp();
+    let body = |material: Value| {
+        json!({ "shape": block([-20.0, -20.0, -THICKNESS_M], [20.0, 20.0, 0.0]),
+            "material": { "type": "filled", "material": material, "medium": { "absorption_per_m": PER_M } } })
+    };
+    let scene = |thing: Value| {
+        Scene::orthographic([0.0, 0.0, 1.0], [0.0; 3], 1e-3)
+            .thing(thing)
+            .lamp(level_square([0.0, 0.0, -1.0], 1e3, true), black(), 1.0, "front")
+            .spp(1024)
+    };
+    let sieve = json!({ "type": "blend", "first": black(), "second": glass(1.0), "weight": SHARE });
+    let mut holes = body(black());
+    holes["opacity"] = json!(1.0 - SHARE);
+    let open = [("absorbing-body-of-a-blend", body(sieve)), ("absorbing-body-with-holes", holes)].map(|(name, thing)| {
+        Truth::new(name, &scene(thing), SHARE * SHARE * tau, "w² e^(−σd), w = ¾, σd = 1")
+            .because("Each of two faces lets by the share w of the light, straight on. Between them the body holds a medium, of which e^(−σd) is left.")
+            .confirmed("a thousand layers", 1e-3, || {
+                SHARE * SHARE * (1.0 - PER_M * THICKNESS_M / 1e3).powi(1000)
+            })
+            .or_else("nothing is absorbed", SHARE * SHARE)
+            .or_else("the faces alone keep light out", tau)
+            .or_else("dark", 0.0)
+            .sees(0.01)
+    });
+    // A face is a pane, which reflects 2R/(1 + R), light that goes to and fro in it included.
+    let r = 2.0 * 0.04 / 1.04;
+    let pane = body(json!({ "type": "thin-dielectric", "index": 1.5 }));
+    let panes = Truth::new("absorbing-body-of-panes", &scene(pane), plate(r, tau), "(1 − r)²τ/(1 − r²τ²), r = 2R/(1 + R), τ = e^(−σd)")
+        .because("The beams between two panes add up to (1 − r)²τ/(1 − r²τ²); on each way from one to the other e^(−σd) is left.")
+        .confirmed("adding up the beams one by one", 1e-12, move || {
+            (0..200).map(|k| (1.0 - r).powi(2) * tau * (r * tau).powi(2 * k)).sum()
+        })
+        .or_else("nothing is absorbed", plate(r, 1.0))
+        .or_else("dark", 0.0)
+        .sees(0.01);
+    open.into_iter().chain([panes]).collect()
 }
 
 /// Mean of a square picture that a ball's disk touches on four sides, before a sky of 1.

@@ -19,7 +19,7 @@ pub(super) fn truths() -> Vec<Truth> {
 }
 
 /// A direction at `tilt_deg` off +z, `turn_deg` from +x toward +y.
-fn direction(tilt_deg: f64, turn_deg: f64) -> Vec3 {
+pub(super) fn direction(tilt_deg: f64, turn_deg: f64) -> Vec3 {
     let ((sin, cos), (sin_turn, cos_turn)) = (tilt_deg.to_radians().sin_cos(), turn_deg.to_radians().sin_cos());
     [sin * cos_turn, sin * sin_turn, cos]
 }
@@ -28,14 +28,14 @@ fn direction(tilt_deg: f64, turn_deg: f64) -> Vec3 {
 type Grain = ([f64; 2], f64);
 
 /// f cos θ for facets that reflect everything, seen along the normal.
-fn highlight((alpha, rotation_deg): Grain, tilt_deg: f64, turn_deg: f64) -> f64 {
+pub(super) fn highlight((alpha, rotation_deg): Grain, tilt_deg: f64, turn_deg: f64) -> f64 {
     let i = direction(tilt_deg, turn_deg - rotation_deg);
     anisotropic_ggx_mirrors(alpha, [0.0, 0.0, 1.0], i) * i[2]
 }
 
 /// The same from the slope of the facet between, tan(θ/2) along the light: its density among slopes, over the Jacobian of slopes to normals
 /// and of normals to directions, and masking by Walter's G₁ of the width that the light meets.
-fn highlight_by_slopes((alpha, rotation_deg): Grain, tilt_deg: f64, turn_deg: f64) -> f64 {
+pub(super) fn highlight_by_slopes((alpha, rotation_deg): Grain, tilt_deg: f64, turn_deg: f64) -> f64 {
     let (tilt, turn) = (tilt_deg.to_radians(), (turn_deg - rotation_deg).to_radians());
     let (tan, cos_h) = ((0.5 * tilt).tan(), (0.5 * tilt).cos());
     let [x, y] = [tan * turn.cos() / alpha[0], tan * turn.sin() / alpha[1]];

@@ -52,6 +52,7 @@ mod motion;
 mod named;
 mod nested_media;
 mod phase_matrices;
+mod polar_disks;
 mod polarised;
 mod principled;
 mod principled_lobes;
@@ -353,7 +354,7 @@ pub fn truths() -> Vec<Truth> {
     LIST.clone()
 }
 
-const GROUPS: [fn() -> Vec<Truth>; 50] = [
+const GROUPS: [fn() -> Vec<Truth>; 51] = [
     lamps_behind_glass::truths,
     furnaces::truths,
     beckmann::truths,
@@ -364,6 +365,7 @@ const GROUPS: [fn() -> Vec<Truth>; 50] = [
     view_factors::truths,
     tubes::truths,
     glass::truths,
+    polar_disks::truths,
     polarised::truths,
     solids::truths,
     absorption::truths,

@@ -76,6 +76,43 @@ fn transmitted(n: f64, mu: f64) -> f64 {
     1.0 - fresnel_exact(mu, n).reflectance()
 }
 
+/// Plastic that loses what its coat reflects back down.
+fn lossy() -> Vec<Truth> {
+    const N: f64 = 1.5;
+    const RHO: f64 = 0.5;
+    let enters = 1.0 - walsh_reflectance(N);
+    // What facets of α = 0.8 reflect is that of the truth `beckmann-coat-of-separable-masking`.
+    let smooth = json!({});
+    let rough = json!({ "alpha": 0.8, "distribution": "beckmann", "masking": "separable" });
+    [("smooth", 60.0_f64, smooth, None), ("rough", 70.0, rough, Some(0.059_834))]
+        .map(|(name, tilt_deg, keys, facets)| {
+            let mut material = json!({ "type": "plastic", "reflectance": RHO, "coat": N, "internal_reflection": "lost" });
+            keys.as_object().into_iter().flatten().for_each(|(key, value)| material[key] = value.clone());
+            let passed = transmitted(N, tilt_deg.to_radians().cos());
+            let reflected = facets.unwrap_or(1.0 - passed);
+            let value = reflected + passed * enters * RHO;
+            Truth::new(
+                format!("plastic-that-loses-light-under-a-{name}-coat"),
+                &plate(tilt_deg, false).thing(thing(material)),
+                value,
+                format!("R + T(µ) T_avg ρ, T that of a smooth coat, {tilt_deg}°, n = 1.5, ρ = ½"),
+            )
+            .because(
+                "The base is T(µₒ) T(µᵢ) ρ/π: of a sky of radiance 1 it gets T_avg, and of what it sends up T(µ) leaves. What the coat reflects \
+                 back down is lost.",
+            )
+            .confirmed("T_avg by quadrature", 1e-6, move || {
+                let mean = interval(|mu| 2.0 * mu * transmitted(N, mu), 0.0, 1.0, 1e-10).value;
+                reflected + passed * RHO * mean
+            })
+            .or_else("light between coat and base comes out", reflected + passed * RHO)
+            .or_else("spread over the solid angle above the coat", reflected + passed * enters * RHO / (N * N))
+            .claims(Claim::AveragesPolarisation)
+            .sees(2e-3)
+        })
+        .into()
+}
+
 fn coated() -> Vec<Truth> {
     const N: f64 = 1.5;
     let mu = 60.0_f64.to_radians().cos();
@@ -148,6 +185,7 @@ fn coated() -> Vec<Truth> {
     .claims(Claim::AveragesPolarisation)
     .sees(2e-3);
     let mut list = vec![half, by_light, coloured_once];
+    list.extend(lossy());
     for (name, further) in [
         ("plastic-white-under-a-smooth-coat", json!({})),
         ("plastic-white-under-a-coat-of-an-image", json!({ "roughness_image": { "file": "half.hdr" } })),

@@ -1,10 +1,11 @@
-//! Tints: shares that are left of what glass, panes and metals reflect and pass.
+//! Tints: shares that are left of what glass, panes and metals reflect and pass, and of what coats reflect.
 
 use serde_json::{Value, json};
 
 use super::scene::{Scene, black, block, brushed_metal, disk, grey_hdr, level_square, parallelogram, shown, sphere};
+use super::surfaces::{plate, thing};
 use super::{Claim, Truth};
-use crate::laws::{FresnelPowers, fresnel_exact};
+use crate::laws::{FresnelPowers, Masking, beckmann_albedo, fresnel_exact};
 use crate::quadrature::interval;
 use crate::vector::{Vec3, dot};
 use std::f64::consts::PI;
@@ -15,6 +16,8 @@ pub(super) fn truths() -> Vec<Truth> {
     list.push(metal());
     list.push(lamp());
     list.push(point());
+    list.push(coat());
+    list.push(rough_coat());
     list
 }
 
@@ -171,4 +174,57 @@ fn point() -> Truth {
         .or_else("no tint", value / TINT)
         .or_else("dark", 0.0)
         .sees(0.01)
+}
+
+/// Plastic whose smooth coat has a chequerboard for its tint.
+fn coat() -> Truth {
+    const TINT: f64 = 0.3;
+    const GROUND: f64 = 0.5;
+    let reflected = fresnel_exact(60_f64.to_radians().cos(), INDEX).reflectance();
+    let board = json!({ "type": "checker", "first": 0.9, "second": TINT, "uv_offset": [0.25, -0.25] });
+    let material = json!({ "type": "plastic", "reflectance": GROUND, "coat": INDEX, "internal_reflection": "uncoloured",
+        "reflected_tint": board });
+    // The middle of the square, (½, ½), is where the picture is.
+    let scene = plate(60.0, false).thing(json!({ "shape": level_square([0.0; 3], 10.0, true), "material": material }));
+    let of = move |tint: f64| tint * reflected + GROUND * (1.0 - reflected);
+    Truth::new("tinted-coat-under-a-sky", &scene, of(TINT), "tR + ρ(1 − R), 60°, n = 1.5, t = 0.3, ρ = ½")
+        .because(
+            "A tint takes a share of what the coat mirrors, and none of what it lets in: of this ρ leaves, all in all.",
+        )
+        .confirmed("adding up the light between base and coat, T_avg by quadrature", 1e-6, move || {
+            let passed = |mu: f64| 1.0 - fresnel_exact(mu, INDEX).reflectance();
+            let mean = interval(|mu| 2.0 * mu * passed(mu), 0.0, 1.0, 1e-10).value;
+            let back = 1.0 - mean / (INDEX * INDEX);
+            let base: f64 = (0..200).map(|k| mean * GROUND * back.powi(k)).sum();
+            TINT * reflected + (1.0 - reflected) * base / (INDEX * INDEX)
+        })
+        .or_else("no tint", of(1.0))
+        .or_else("the other fields", of(0.9))
+        .or_else("the ground tinted, too", TINT * of(1.0))
+        .claims(Claim::AveragesPolarisation)
+        .sees(2e-3)
+}
+
+/// Plastic that is black under a rough coat.
+fn rough_coat() -> Truth {
+    const TINT: f64 = 0.6;
+    let (sine, cosine) = 70_f64.to_radians().sin_cos();
+    let material = json!({ "type": "plastic", "reflectance": 0, "coat": INDEX, "alpha": 0.8, "distribution": "beckmann",
+        "masking": "separable", "reflected_tint": TINT });
+    // That of `beckmann-coat-of-separable-masking`.
+    let untinted = 0.059_834;
+    Truth::new(
+        "tinted-rough-coat-under-a-sky",
+        &plate(70.0, false).thing(thing(material)),
+        TINT * untinted,
+        "t ∫ D(h) R G(o, i)/(4 cos θₒ) dω_i, seen 70° off the normal, t = 0.6",
+    )
+    .because("What the facets of a coat reflect is tinted, whichever of its directions is drawn.")
+    .confirmed("midpoints over the slopes of facets, 640²", 5e-5, move || {
+        TINT * beckmann_albedo([0.8; 2], [sine, 0.0, cosine], Some(INDEX), Masking::Separable).reflected
+    })
+    .or_else("no tint", untinted)
+    .or_else("the tint twice", TINT * TINT * untinted)
+    .claims(Claim::AveragesPolarisation)
+    .sees(0.01)
 }

@@ -14,7 +14,7 @@ use crate::json::{
 };
 use crate::linear::{self, cofactors, is_similarity, norm, unit};
 use crate::mesh::Shading;
-use crate::model::{Mesh, Shape, Transform};
+use crate::model::{DiskCoordinates, Mesh, Shape, Transform};
 
 crate::record! {
     /// A sphere; its normal points outward.
@@ -47,8 +47,17 @@ crate::record! {
         normal: Required<Direction>,
         /// Radius, m.
         radius_m: Required<Positive>,
+        /// What its texture coordinates are.
+        coordinates: Required<DiskCoordinates> = r#""square""#,
     }
 }
+
+crate::keywords!(DiskCoordinates {
+    /// Those of the square around it, (½, ½) in the middle.
+    "square" => Self::Square,
+    /// u from 0 in the middle to 1 at the rim; v around it from 0 to 1, counter-clockwise seen from its front.
+    "polar" => Self::Polar,
+});
 
 crate::record! {
     /// Triangles, of a file or listed here; the normal of (a, b, c) is along (b − a) × (c − a): counter-clockwise seen
@@ -146,7 +155,8 @@ pub(crate) fn shape(form: &ShapeForm, object: &str, files: &mut Files, reader: &
             Some(Shape::Parallelogram { origin: p.origin_m?, u, v })
         }
         ShapeForm::Disk(disk) => {
-            Some(Shape::Disk { center: disk.center_m?, normal: disk.normal?.0, radius_m: disk.radius_m?.0 })
+            let (center, normal, radius_m) = (disk.center_m?, disk.normal?.0, disk.radius_m?.0);
+            Some(Shape::Disk { center, normal, radius_m, coordinates: disk.coordinates? })
         }
         ShapeForm::Cylinder(c) => {
             let (start, end) = (c.start_m?, c.end_m?);

@@ -2,6 +2,7 @@
 
 mod blend;
 mod dielectric;
+mod filled;
 mod fluorescent;
 mod grating;
 mod index;
@@ -31,6 +32,7 @@ pub use blend::MOST_BLEND_PARTS;
 use blend::blend;
 pub(crate) use dielectric::DielectricMaterial;
 use dielectric::dielectric;
+use filled::filled;
 use fluorescent::{FluorescentMaterial, fluorescent};
 use grating::{GratingMaterial, grating};
 pub(super) use index::{IndexForm, index, least};
@@ -38,6 +40,7 @@ use index::{NamedMetal, complex_index, complex_keys};
 use measured::{MeasuredMaterial, measured};
 use plastic::{PlasticMaterial, plastic};
 use principled::{PrincipledMaterial, principled};
+pub use roughness::MOST_WIDTHS;
 use roughness::{RoughnessKeys, roughness, roughness_keys};
 use sheet::{PolariserMaterial, RetarderMaterial, polariser, retarder};
 use thin_film::{FilmLayerForm, thin_film};
@@ -232,6 +235,16 @@ crate::record! {
 }
 
 crate::record! {
+    /// A body of another material, and what fills it: light that the material lets in, or an "opacity" lets by, is in a medium there.
+    pub(crate) struct FilledMaterial + comment {
+        /// Its surface: the name of one of "materials" that stands before this one, or a material of its own.
+        material: Required<Box<MaterialUse>>,
+        /// What fills the side that the surface normal points away from (the inside of a sphere or a closed mesh).
+        medium: Required<Box<MediumForm>>,
+    }
+}
+
+crate::record! {
     /// No surface at all, only the boundary of a medium: fog, smoke, a cloud. Light passes it as if it were not there.
     pub(crate) struct BoundaryMaterial + comment {
         /// What fills the side that the surface normal points away from (the inside of a sphere or a closed mesh).
@@ -265,6 +278,7 @@ crate::variants! {
         "measured" => Measured(MeasuredMaterial),
         "principled" => Principled(PrincipledMaterial),
         "blend" => Blend(BlendMaterial),
+        "filled" => Filled(FilledMaterial),
         "boundary" => Boundary(BoundaryMaterial),
         "black" => Black(BlackMaterial),
     }
@@ -289,6 +303,7 @@ impl MaterialForm {
             Self::Measured(m) => m.at,
             Self::Principled(m) => m.at,
             Self::Blend(m) => m.at,
+            Self::Filled(m) => m.at,
             Self::Boundary(m) => m.at,
             Self::Black(m) => m.at,
         }
@@ -378,6 +393,7 @@ pub(crate) fn material<'f>(
         MaterialForm::Measured(form) => measured(form, files, reader),
         MaterialForm::Principled(form) => principled(form, spectra, files, reader),
         MaterialForm::Blend(form) => blend(form, before, spectra, files, reader),
+        MaterialForm::Filled(form) => return filled(form, before, spectra, files, reader),
         MaterialForm::Boundary(boundary) => {
             let medium = medium(boundary.medium.as_ref()?, spectra, files, reader)?;
             let priority = boundary.priority.clone().checked()?.map(|priority| priority.0 as u32);

@@ -26,5 +26,5 @@ mod surface;
 mod uv;
 mod view;
 
-pub use material::MOST_BLEND_PARTS;
+pub use material::{MOST_BLEND_PARTS, MOST_WIDTHS};
 pub(crate) use scene::{SceneForm, scene};

@@ -80,6 +80,9 @@ pub enum InternalReflection {
     Coloured,
     /// The ground colours it once, as if it were white for what comes after: ρ/(1 − rᵢ) in all.
     Uncoloured,
+    /// It is lost. The ground is lit and seen through the coat as if that were smooth, and its light is not spread over the n² times larger
+    /// solid angle above the coat: T(µₒ) T(µᵢ) ρ/π.
+    Lost,
 }
 
 /// How much a principled surface has of each lobe.
@@ -250,7 +253,7 @@ pub enum MaterialKind {
         /// The side.
         side: Side,
     },
-    /// A metal, an interface or a pane, of whose light a share is left.
+    /// A metal, an interface or a pane, of whose light a share is left; or plastic, of whose coat's reflection one is.
     Tinted {
         /// What it is without.
         kind: Box<MaterialKind>,

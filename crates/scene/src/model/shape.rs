@@ -3,6 +3,16 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
+/// Texture coordinates of a disk.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum DiskCoordinates {
+    /// Those of the square around it.
+    #[default]
+    Square,
+    /// u is the share of the radius, v that of a turn about the axis.
+    Polar,
+}
+
 /// A shape in its own coordinates, lengths in m.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
@@ -30,6 +40,8 @@ pub enum Shape {
         normal: [f64; 3],
         /// Radius, above 0.
         radius_m: f64,
+        /// Its texture coordinates.
+        coordinates: DiskCoordinates,
     },
     /// Cylinder; its normal points outward.
     Cylinder {

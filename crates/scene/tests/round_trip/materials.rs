@@ -46,6 +46,8 @@ fn materials_and_spectra() {
             "painted",
             "slope",
             "stained",
+            "lacquered",
+            "jar",
             "bronzed",
             "car",
             "pot",
@@ -187,6 +189,13 @@ fn materials_and_spectra() {
     let silver = MaterialKind::Conductor { metal: Metal::Index(ComplexIndex::named("Ag").unwrap()), film: None };
     let bronzed = MaterialKind::OneSided { kind: Box::new(tinted(silver, [0.5, 1.0])), side: Side::Front };
     assert_eq!(kind(&scene, "bronzed"), &bronzed);
+    let (reflectance, coat) = (Spectrum::Constant(0.25).into(), RefractiveIndex::Constant(1.5));
+    let lacquered =
+        MaterialKind::Plastic { reflectance, coat, facets: None, internal_reflection: InternalReflection::Lost };
+    assert_eq!(kind(&scene, "lacquered"), &tinted(lacquered, [0.5, 1.0]));
+    let jar = scene.materials.iter().find(|material| material.name == "jar").expect("a jar");
+    assert_eq!(&jar.kind, kind(&scene, "pane"));
+    assert_eq!(jar.medium.as_ref().expect("it is filled").absorption, Spectrum::Constant(2.0));
     let facets = |alpha: [f64; 2], rotation_rad: f64| Microfacets {
         masking: FacetMasking::Separable,
         ..Microfacets::ggx(alpha, rotation_rad)

@@ -90,7 +90,15 @@ fn objects_and_lights() {
     let radiance = Spectrum::rgb_emission([4.0, 4.0 * 0.8, 2.0], Illuminant::A).expect("right");
     assert_eq!(sheet.emission, Some(Emission { radiance, image: None, sides: EmissionSides::Both }));
     assert_eq!((sheet.name.as_str(), sheet.material), ("objects[1]", 13));
-    assert_eq!(disk.shape, Shape::Disk { center: [0.0, 1.0, 0.0], normal: [0.0, -0.6, 0.8], radius_m: 2.0 });
+    assert_eq!(
+        disk.shape,
+        Shape::Disk {
+            center: [0.0, 1.0, 0.0],
+            normal: [0.0, -0.6, 0.8],
+            radius_m: 2.0,
+            coordinates: DiskCoordinates::Polar,
+        }
+    );
     let radiance = Spectrum::blackbody(5000.0, 1e-3).expect("right");
     assert_eq!(disk.emission, Some(Emission { radiance, image: None, sides: EmissionSides::Front }));
     let vertices = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
@@ -100,7 +108,7 @@ fn objects_and_lights() {
     let uvs = vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.5]];
     let colours = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.5, 0.25, 1.0]];
     assert_eq!(pyramid.shape, Shape::Mesh(Arc::new(Mesh { vertices, triangles, normals, uvs, colours })));
-    assert_eq!((pyramid.name.as_str(), pyramid.material), ("pyramid", 36));
+    assert_eq!((pyramid.name.as_str(), pyramid.material), ("pyramid", 38));
     // By hand: (x, y, z) → (2x, −2y, 6z) → a quarter turn: (2y, 2x, 6z) → moved → x and y swapped, moved.
     let linear = [[2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 6.0]];
     assert_eq!(pyramid.transform, Transform { linear, translation_m: [25.0, 16.0, 37.0] });

@@ -229,7 +229,10 @@ impl Bsdf {
             MaterialKind::Tinted { kind, reflected, transmitted } => {
                 let [reflected, transmitted] =
                     [reflected, transmitted].map(|texture| PathTexture::new(texture, range_nm));
-                Self::Tinted(Tinted::new(Self::new(kind, range_nm), reflected, transmitted))
+                match Self::new(kind, range_nm) {
+                    Self::Plastic(plastic) => Self::Plastic(plastic.with_tint(reflected, range_nm)),
+                    bsdf => Self::Tinted(Tinted::new(bsdf, reflected, transmitted)),
+                }
             }
             // Paths pass a boundary before they ask what it does.
             MaterialKind::Boundary { .. } | MaterialKind::Black => Self::Black,

@@ -5,6 +5,10 @@
 //! f = f_coat + T(µ_o) T(µ_i)·ρ/(π n² (1 − ρ r_i)), r_i = 1 − T_avg/n². The relation of r_i to T_avg = 2∫Tµ dµ is étendue's, so
 //! that a white ground returns all that the coat lets in (Walsh 1926; Duntley 1942). T is exact for a smooth coat; for a
 //! rough one 1 − R of its facets, tabulated. Facets of the coat that hide each other pass their light to the ground.
+//! Where the light that is reflected back down is lost, the ground is f = T(µ_o) T(µ_i)·ρ/π of a smooth T, as of a polarised model of plastic
+//! in another renderer.
+//!
+//! A tint multiplies what the coat reflects, f_coat, and nothing else.
 
 use super::albedo::{self, Azimuths, LossTable, Tabulated};
 use super::glass_losses::mean_transmittance;
@@ -30,6 +34,8 @@ pub struct Plastic {
     mean_transmittance: PathSpectrum,
     internal_reflection: InternalReflection,
     rough: Option<Box<Rough>>,
+    /// Share that is left of what the coat reflects, and its mean over the spectrum.
+    tint: Option<Box<(PathTexture, f64)>>,
     /// Whether the coat's index depends on the wavelength.
     dispersive: bool,
     /// Index of the coat by which the lobe is chosen, and the ground's share in it: every wavelength chooses alike.
@@ -41,8 +47,8 @@ pub struct Plastic {
 #[derive(Clone, Debug)]
 struct Rough {
     distribution: Distribution,
-    /// T(µ).
-    transmittance: Arc<LossTable>,
+    /// T(µ); `None` is that of a smooth coat.
+    transmittance: Option<Arc<LossTable>>,
     /// The least and the largest index.
     eta: [f64; 2],
     /// What the coat lets in of polarised light, where that is carried.
@@ -64,17 +70,21 @@ impl Plastic {
             let distribution = Distribution::new(facets);
             let eta = albedo::extremes(range_nm, |nm| coat.eval(nm));
             let reflected = |facet: f64, eta: f64| fresnel::dielectric(facet, eta).map_or(1.0, |f| f.reflectance);
-            let transmittance = albedo::shared(Tabulated::Coat, &distribution, eta, || {
-                LossTable::new(Azimuths::of(&distribution), eta, MEAN_ERROR, |wo, eta| {
-                    1.0 - mean_over_facets(&distribution, wo, Some(eta), |facet| {
-                        reflected(facet.cos, eta) * facet.mirrored
+            let through_facets = internal_reflection != InternalReflection::Lost;
+            let transmittance = through_facets.then(|| {
+                albedo::shared(Tabulated::Coat, &distribution, eta, || {
+                    LossTable::new(Azimuths::of(&distribution), eta, MEAN_ERROR, |wo, eta| {
+                        1.0 - mean_over_facets(&distribution, wo, Some(eta), |facet| {
+                            reflected(facet.cos, eta) * facet.mirrored
+                        })
                     })
                 })
             });
             Box::new(Rough { distribution, transmittance, eta, polarised: None })
         });
-        let mean_transmittance = PathSpectrum::tabulate(range_nm, |nm| match &rough {
-            Some(rough) => rough.transmittance.average(coat.eval(nm)),
+        let table = rough.as_ref().and_then(|rough| rough.transmittance.as_ref());
+        let mean_transmittance = PathSpectrum::tabulate(range_nm, |nm| match table {
+            Some(table) => table.average(coat.eval(nm)),
             None => mean_transmittance(coat.eval(nm)),
         });
         let middle = 0.5 * (first + last);
@@ -87,6 +97,7 @@ impl Plastic {
             coat,
             mean_transmittance,
             rough,
+            tint: None,
         };
         let ground = |nm: f64| {
             let rho = plastic.reflectance.mean(nm);
@@ -94,6 +105,18 @@ impl Plastic {
         };
         plastic.ground = steps().map(ground).sum::<f64>() / 65.0;
         plastic
+    }
+
+    /// The same, of whose coat's reflection a share is left.
+    pub fn with_tint(mut self, tint: PathTexture, [first, last]: [f64; 2]) -> Self {
+        let mean = (0..=64).map(|i| tint.mean(first + (last - first) * f64::from(i) / 64.0)).sum::<f64>() / 65.0;
+        self.tint = Some(Box::new((tint, mean)));
+        self
+    }
+
+    /// What is left of what the coat reflects.
+    fn left<const N: usize>(&self, lambda_nm: &Lanes<f64, N>, at: &Shading<'_>) -> Option<Lanes<f64, N>> {
+        self.tint.as_ref().map(|tint| tint.0.lanes(lambda_nm, at.texture_point()))
     }
 
     /// See [`Properties`]: a coat without width is a mirror over the diffuse ground. It is made for vacuum.
@@ -104,12 +127,13 @@ impl Plastic {
         }
     }
 
-    /// ρ/(n²(1 − ρ r_i)) of a coat of index `n`; where the ground colours light only once, ρ/(n²(1 − r_i)).
+    /// ρ/(n²(1 − ρ r_i)) of a coat of index `n`; where the ground colours light only once, ρ/(n²(1 − r_i)); where that light is lost, ρ.
     fn ground(&self, wavelength_nm: f64, n: f64, rho: f64) -> f64 {
         let inward = self.mean_transmittance.eval(wavelength_nm) / (n * n);
         match self.internal_reflection {
             InternalReflection::Coloured => rho / (n * n * (1.0 - rho * (1.0 - inward))),
             InternalReflection::Uncoloured => rho / (n * n * inward),
+            InternalReflection::Lost => rho,
         }
     }
 
@@ -123,8 +147,8 @@ impl Plastic {
 
     /// T of the coat in a direction of its frame.
     fn transmittance(&self, w: Vec3<f64>, index: f64) -> f64 {
-        match &self.rough {
-            Some(rough) => rough.transmittance.eval(w, index),
+        match self.rough.as_ref().and_then(|rough| rough.transmittance.as_ref()) {
+            Some(table) => table.eval(w, index),
             None => fresnel::dielectric(w.z.min(1.0), index).map_or(0.0, |f| f.transmittance),
         }
     }
@@ -132,7 +156,7 @@ impl Plastic {
     /// By how much the coat prefers light that swings across the plane of incidence on its way in or out, (T_s − T_p)/(T_s + T_p), and
     /// the same of light that swings at 45° to it.
     fn diattenuation(&self, w: Vec3<f64>, index: f64) -> [f64; 2] {
-        match &self.rough {
+        match self.rough.as_ref().filter(|rough| rough.transmittance.is_some()) {
             Some(rough) => rough.polarised.as_ref().map_or([0.0; 2], |polarised| polarised.eval(w, index)),
             None => {
                 let mu = w.z.min(1.0);
@@ -159,12 +183,13 @@ impl Plastic {
         }
         let facets = self.rough.as_ref().map(|rough| rough.distribution.reflection(local_o, local_i));
         let reflectance: Lanes<f64, N> = self.reflectance.lanes(lambda_nm, at.texture_point());
+        let left = self.left(lambda_nm, at).unwrap_or(Lanes::ONE);
         Some(std::array::from_fn(|lane| {
             let nm = lambda_nm[lane];
             let index = self.coat.eval(nm);
             let coat = facets.as_ref().map_or((0.0, mueller::IDENTITY), |facets| {
                 let reflectance = fresnel::dielectric(facets.cos, index).map_or(1.0, |f| f.reflectance);
-                (reflectance * facets.term, mueller::dielectric_reflection(facets.cos, index))
+                (left[lane] * reflectance * facets.term, mueller::dielectric_reflection(facets.cos, index))
             });
             let [(t_o, a_o), (t_i, a_i)] =
                 [local_o, local_i].map(|w| (self.transmittance(w, index), self.diattenuation(w, index)));
@@ -176,7 +201,7 @@ impl Plastic {
 
     /// Makes the table that [`Plastic::mueller`] needs: what the facets of a rough coat do not reflect of each state they let in.
     pub(super) fn prepare_polarisation(&mut self) {
-        if let Some(rough) = &mut self.rough {
+        if let Some(rough) = self.rough.as_mut().filter(|rough| rough.transmittance.is_some()) {
             rough.polarised = Some(PolarisedLoss::shared(Tabulated::Coat, rough.eta, &rough.distribution, let_in));
         }
     }
@@ -184,7 +209,11 @@ impl Plastic {
     /// The probability of the coat's lobe.
     fn coat_share(&self, wo: Vec3<f64>) -> f64 {
         let passed = self.transmittance(wo, self.reference);
-        let (coat, ground) = (1.0 - passed, passed * self.ground);
+        let (mut coat, ground) = (1.0 - passed, passed * self.ground);
+        if let Some(tint) = &self.tint {
+            // A tenth is drawn for places of an image that are brighter than its mean.
+            coat *= tint.1.max(0.1);
+        }
         // Never 0: at normal incidence an index near 1 reflects next to nothing, but not nothing.
         coat / (coat + ground)
     }
@@ -206,7 +235,8 @@ impl Plastic {
         let facets = self.rough.as_ref().map(|rough| rough.distribution.reflection(wo, wi));
         let diffuse = wi.z * FRAC_1_PI;
         let reflectance: Lanes<f64, N> = self.reflectance.lanes(lambda_nm, at.texture_point());
-        // T(µ_o) T(µ_i), and f·|cos θ_i| of the coat's facets.
+        let left = self.left(lambda_nm, at);
+        // T(µ_o) T(µ_i), and f·|cos θ_i| of the coat's facets without its tint.
         let coat = |index: f64| {
             let passed = self.transmittance(wo, index) * self.transmittance(wi, index);
             let reflected = facets.as_ref().map_or(0.0, |facets| {
@@ -220,7 +250,10 @@ impl Plastic {
         let f_cos = Lanes::from_fn(|lane| {
             let nm = lambda_nm[lane];
             let index = if self.dispersive { self.coat.eval(nm) } else { self.reference };
-            let (passed, reflected) = of_all.unwrap_or_else(|| coat(index));
+            let (passed, mut reflected) = of_all.unwrap_or_else(|| coat(index));
+            if let Some(left) = &left {
+                reflected *= left[lane];
+            }
             passed * self.ground(nm, index, reflectance[lane]) * diffuse + reflected
         });
         let mut density = (1.0 - share) * diffuse;
@@ -249,9 +282,13 @@ impl Plastic {
             }
             None => {
                 let reflected = |nm: f64| fresnel::dielectric(mu, self.coat.eval(nm)).map_or(1.0, |f| f.reflectance);
+                let mut weight = Lanes::from_fn(|lane| reflected(lambda_nm[lane]) / share);
+                if let Some(left) = self.left(lambda_nm, at) {
+                    weight *= left;
+                }
                 return Some(BsdfSample {
                     wi: wo.reflected_about(n).renormalized(),
-                    weight: Lanes::from_fn(|lane| reflected(lambda_nm[lane]) / share),
+                    weight,
                     density: Density::Delta,
                     lane_density: Lanes::ONE,
                     eta: 1.0,

@@ -12,7 +12,7 @@
 //!
 //! **A dielectric that states both its sides** says it itself: a path that meets it from within has come through its interior, and one
 //! that goes through it goes on in there, or leaves it. What such a body holds is surrounded by its interior as long as it is not itself
-//! such a body.
+//! such a body. The same holds of a body of another material that is filled with a medium.
 
 mod albedo;
 mod density;
@@ -132,7 +132,7 @@ impl<'a> MediumStack<'a> {
     }
 }
 
-/// What a dielectric that states both its sides holds.
+/// What a dielectric that states both its sides holds, or a body that is filled.
 #[derive(Clone, Debug)]
 pub(crate) struct Interior {
     /// What fills it, if that does anything to light.

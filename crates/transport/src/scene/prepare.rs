@@ -169,7 +169,8 @@ pub(crate) fn build(scene: &Scene, study: &Study, earlier: Option<Prepared>) -> 
             .iter()
             .map(|material| {
                 let medium = || material.medium.as_ref().and_then(|medium| Medium::new(medium, range_nm, &frame));
-                material.kind.media().map(|_| Interior { medium: medium() })
+                let is_filled = material.medium.is_some() && material.kind.solid().is_none();
+                (is_filled || material.kind.media().is_some()).then(|| Interior { medium: medium() })
             })
             .collect(),
         objects: shapes::objects(scene)

@@ -239,8 +239,9 @@ impl Collected {
                 coordinates = Coordinates::Parallelogram { swapped: to_world.mirrors(), edges };
                 self.add(index, Parallelogram::new(to_world.point(*origin), u, v)?);
             }
-            Shape::Disk { center, normal, radius_m } => {
-                coordinates = Coordinates::Round(RoundCoordinates::disk(*center, *normal, *radius_m, &to_world));
+            Shape::Disk { center, normal, radius_m, coordinates: kind } => {
+                let round = RoundCoordinates::disk((*center, *normal, *radius_m), *kind, &to_world);
+                coordinates = Coordinates::Round(round);
                 let normal = to_world.vector(*normal).normalized();
                 self.add(index, Disk::new(to_world.point(*center), normal, radius_m * to_world.uniform_scale())?);
             }

@@ -76,7 +76,7 @@ pub(crate) struct Surfaces {
     pub properties: Vec<Properties>,
     /// How light leaves that surfaces give back at another wavelength: as from a white Lambertian one.
     pub white: Bsdf,
-    /// What each material holds, where it states both its sides itself.
+    /// What each material holds, where it states both its sides itself or is filled.
     pub interiors: Vec<Option<Interior>>,
     pub objects: Vec<ObjectSurface>,
     /// Object of each primitive, for each geometry by its label.
@@ -164,7 +164,7 @@ impl<'a> Surface<'a> {
         self.own.emission.is_some()
     }
 
-    /// What it holds, where it states both its sides itself.
+    /// What it holds, where it states both its sides itself or is filled.
     pub(crate) fn interior(&self) -> Option<&'a Interior> {
         self.surfaces.interiors[self.own.material].as_ref()
     }

@@ -5,6 +5,7 @@
 
 use crate::frame::{Affine, SceneFrame, mapped};
 use etalon_optics::{Frame, Vec3, atan2_turns};
+use etalon_scene::DiskCoordinates;
 use glam::{DAffine3, DMat3, DVec3};
 use std::f64::consts::{PI, TAU};
 
@@ -23,6 +24,8 @@ enum Round {
     Sphere,
     /// The square around it, u along the first and v along the second axis.
     Disk,
+    /// u grows from the middle to the rim; v runs around it from the first axis toward the second.
+    PolarDisk,
     /// u runs around the axis, counter-clockwise seen from the end; v from the start to the end.
     Cylinder,
 }
@@ -34,10 +37,18 @@ impl RoundCoordinates {
         Self::new(Round::Sphere, axes, centre, to_world)
     }
 
-    /// Of a disk.
-    pub(crate) fn disk(centre: [f64; 3], normal: [f64; 3], radius: f64, to_world: &Affine) -> Self {
+    /// Of a disk by its centre, its normal and its radius.
+    pub(crate) fn disk(
+        (centre, normal, radius): ([f64; 3], [f64; 3], f64),
+        coordinates: DiskCoordinates,
+        to_world: &Affine,
+    ) -> Self {
         let frame = Frame::from_normal(Vec3::from_array(normal));
-        Self::new(Round::Disk, [frame.s * radius, frame.t * radius, frame.n * radius], centre, to_world)
+        let kind = match coordinates {
+            DiskCoordinates::Square => Round::Disk,
+            DiskCoordinates::Polar => Round::PolarDisk,
+        };
+        Self::new(kind, [frame.s * radius, frame.t * radius, frame.n * radius], centre, to_world)
     }
 
     /// Of a cylinder.
@@ -83,11 +94,15 @@ impl RoundCoordinates {
                 [0.5 + atan2_turns(q.x, q.z), 0.5 + 2.0 * atan2_turns(q.y, off_axis)]
             }
             Round::Disk => [0.5 + 0.5 * q.x, 0.5 + 0.5 * q.y],
+            Round::PolarDisk => {
+                let turns = atan2_turns(q.y, q.x);
+                [(q.x * q.x + q.y * q.y).sqrt(), if turns < 0.0 { turns + 1.0 } else { turns }]
+            }
             Round::Cylinder => [0.5 + atan2_turns(q.y, q.x), q.z],
         }
     }
 
-    /// How a point moves with u and with v; `None` at a pole, and on the caps of a cylinder.
+    /// How a point moves with u and with v; `None` at a pole, in the middle of a polar disk, and on the caps of a cylinder.
     pub(crate) fn tangents(&self, p: Vec3<f64>) -> Option<[Vec3<f64>; 2]> {
         let q = self.unit(p);
         let [along_u, along_v] = match self.kind {
@@ -100,6 +115,13 @@ impl RoundCoordinates {
                 [Vec3::new(q.z, 0.0, -q.x) * TAU, up * PI]
             }
             Round::Disk => [Vec3::new(2.0, 0.0, 0.0), Vec3::new(0.0, 2.0, 0.0)],
+            Round::PolarDisk => {
+                let r = (q.x * q.x + q.y * q.y).sqrt();
+                if r == 0.0 {
+                    return None;
+                }
+                [Vec3::new(q.x / r, q.y / r, 0.0), Vec3::new(-q.y, q.x, 0.0) * TAU]
+            }
             Round::Cylinder => {
                 // A cap is where the nearest part of the surface is an end.
                 let off_axis = (q.x * q.x + q.y * q.y).sqrt();
@@ -144,13 +166,19 @@ mod tests {
             on((around + Vec3::new(0.0, latitude.sin(), 0.0)) * radius)
         };
         let disk = move |u: f64, v: f64| on((frame.s * (2.0 * u - 1.0) + frame.t * (2.0 * v - 1.0)) * radius);
+        let polar = move |u: f64, v: f64| {
+            let angle = TAU * v;
+            on((frame.s * angle.cos() + frame.t * angle.sin()) * (u * radius))
+        };
         let tube = move |u: f64, v: f64| {
             let angle = TAU * (u - 0.5);
             on((frame.s * angle.cos() + frame.t * angle.sin()) * radius + normal * (2.5 * v))
         };
+        let round = |kind| RoundCoordinates::disk((centre, normal.to_array(), radius), kind, place);
         vec![
             ("sphere", RoundCoordinates::sphere(centre, radius, place), Box::new(ball)),
-            ("disk", RoundCoordinates::disk(centre, normal.to_array(), radius, place), Box::new(disk)),
+            ("disk", round(DiskCoordinates::Square), Box::new(disk)),
+            ("polar disk", round(DiskCoordinates::Polar), Box::new(polar)),
             ("cylinder", RoundCoordinates::cylinder(centre, end, radius, place), Box::new(tube)),
         ]
     }
@@ -203,8 +231,9 @@ mod tests {
     #[test]
     fn poles_and_caps_have_no_tangents() {
         let [place, ..] = placements();
-        let [ball, _, tube] = [0, 1, 2].map(|i| cases(&place).remove(i).1);
+        let [ball, polar, tube] = [0, 2, 3].map(|i| cases(&place).remove(i).1);
         let at = |p: [f64; 3]| place.point(p);
+        assert!(polar.tangents(at([0.4, 0.1, -0.3])).is_none());
         assert!(ball.tangents(at([0.4, 0.1 + 1.7, -0.3])).is_none());
         // Within the tube's ends, at all distances from the axis but the rim's; and close to them on the wall.
         let frame = Frame::from_normal(Vec3::new(0.6, 0.0, 0.8));

@@ -144,11 +144,12 @@ fn deltas(kind: &MaterialKind, wo: [f64; 3], wavelength_nm: f64) -> Vec<DeltaLob
             let (n, rho) = (coat.eval(wavelength_nm), uniform(reflectance).eval(wavelength_nm));
             let weight = laws::fresnel_exact(cos, n).reflectance();
             let passed = 1.0 - etalon_oracle::truths::walsh_reflectance(n);
-            let again = match internal_reflection {
-                InternalReflection::Coloured => rho,
-                InternalReflection::Uncoloured => 1.0,
+            let again = |again: f64| passed * rho / (n * n * (1.0 - again * (1.0 - passed / (n * n))));
+            let ground = match internal_reflection {
+                InternalReflection::Coloured => again(rho),
+                InternalReflection::Uncoloured => again(1.0),
+                InternalReflection::Lost => passed * rho,
             };
-            let ground = passed * rho / (n * n * (1.0 - again * (1.0 - passed / (n * n))));
             let probability = weight / (weight + (1.0 - weight) * ground);
             vec![DeltaLobe { wi: mirrored, weight, probability }]
         }
@@ -210,7 +211,13 @@ fn deltas(kind: &MaterialKind, wo: [f64; 3], wavelength_nm: f64) -> Vec<DeltaLob
         MaterialKind::Tinted { kind, reflected, transmitted } => {
             let tint = |l: DeltaLobe| {
                 let share = if l.wi[2] * wo[2] > 0.0 { reflected } else { transmitted };
-                DeltaLobe { weight: l.weight * uniform(share).eval(wavelength_nm), ..l }
+                let left = uniform(share).eval(wavelength_nm);
+                // A coat that reflects less is drawn less often, beside its ground.
+                let probability = match **kind {
+                    MaterialKind::Plastic { .. } => l.probability * left / (l.probability * left + 1.0 - l.probability),
+                    _ => l.probability,
+                };
+                DeltaLobe { weight: l.weight * left, probability, ..l }
             };
             deltas(kind, wo, wavelength_nm).into_iter().map(tint).collect()
         }

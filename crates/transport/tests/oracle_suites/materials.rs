@@ -375,6 +375,17 @@ fn tinted(of: Material) -> Material {
 
 scatters_suite!(tinted_rough_glass, tinted(rough_glass("N-BK7", "vacuum", 0.4, false)));
 scatters_suite!(tinted_glass, tinted(glass("N-BK7", "vacuum")));
+/// Of whose ground no light comes back from below the coat.
+fn without_return(rho: f64, alpha: f64) -> Material {
+    let (reflectance, coat) = (Spectrum::Constant(rho).into(), RefractiveIndex::Constant(1.5));
+    let (facets, internal_reflection) = ((alpha > 0.0).then(|| alpha.into()), InternalReflection::Lost);
+    Material::new(MaterialKind::Plastic { reflectance, coat, facets, internal_reflection })
+}
+
+scatters_suite!(plastic_without_return, without_return(1.0, 0.0));
+scatters_suite!(rough_plastic_without_return, without_return(1.0, 0.3));
+scatters_suite!(tinted_coat, tinted(plastic(0.7, 0.0)));
+scatters_suite!(tinted_rough_coat, tinted(plastic(0.7, 0.3)));
 
 /// No other has a grain but the sheets, whose axis is in their Mueller matrices alone.
 #[test]

@@ -23,7 +23,7 @@ fn parts(kind: &MaterialKind) -> usize {
     }
 }
 
-/// Named materials that a blend may be made of: those that stand before it, so that none is made of itself.
+/// Named materials that a blend or a filled body may be made of: those that stand before it, so that none is made of itself.
 #[derive(Debug)]
 pub(crate) struct Before<'m> {
     /// All of the file's names.
@@ -33,12 +33,26 @@ pub(crate) struct Before<'m> {
 }
 
 impl Before<'_> {
+    /// A material that another is made of: a named one, or one of its own.
+    pub(super) fn material<'f>(
+        &self,
+        of: &'f MaterialUse,
+        spectra: &mut Spectra<'f>,
+        files: &mut Files,
+        reader: &mut Reader<'_>,
+    ) -> Option<Made> {
+        match of {
+            MaterialUse::Own(own) => material(own, self, spectra, files, reader),
+            MaterialUse::Named(name) => self.find(name, reader),
+        }
+    }
+
     fn find(&self, name: &Spanned<String>, reader: &mut Reader<'_>) -> Option<Made> {
         let place = self.names.find(name, reader)?;
         match self.made.get(place) {
             Some(made) => made.clone(),
             None => {
-                let message = format!("the blend uses the material \"{}\", which is defined after it", name.value);
+                let message = format!("it is made of the material \"{}\", which is defined after it", name.value);
                 reader.error_hint(Code::Circular, name.at, message, "move it up");
                 None
             }
@@ -54,10 +68,7 @@ pub(super) fn blend<'f>(
     files: &mut Files,
     reader: &mut Reader<'_>,
 ) -> Option<MaterialKind> {
-    let mut part = |part: &'f Option<Box<MaterialUse>>| match part.as_deref()? {
-        MaterialUse::Own(own) => material(own, before, spectra, files, reader),
-        MaterialUse::Named(name) => before.find(name, reader),
-    };
+    let mut part = |part: &'f Option<Box<MaterialUse>>| before.material(part.as_deref()?, spectra, files, reader);
     let (first, second) = (part(&blend.first), part(&blend.second));
     let by = match (&blend.weight, &blend.weight_image) {
         (Optional::Given(weight), _) => Some(NumberTexture::Uniform(weight.0)),
@@ -67,7 +78,7 @@ pub(super) fn blend<'f>(
     let (first, second, by) = (first?, second?, by?);
     if first.medium.is_some() || second.medium.is_some() {
         let message = "what is inside a blend cannot have an absorption or a medium";
-        reader.error_hint(Code::KeyConflict, blend.at.head(), message, "use the material without a blend");
+        reader.error_hint(Code::KeyConflict, blend.at.head(), message, "put the blend into a \"filled\" material");
         return None;
     }
     let (first, second) = (first.kind, second.kind);

@@ -4,10 +4,12 @@ use super::super::detail::RoughnessImageForm;
 use super::super::spectra::{Role, Spectra};
 use super::super::spectrum::SpectrumForm;
 use super::roughness::{RoughnessKeys, roughness, roughness_keys};
+use super::tint::tint;
 use super::{Alpha, IndexForm, MaterialSides, Width, index, least};
 use crate::files::Files;
 use crate::json::{Code, Optional, Reader, Required, Rule, Spanned};
 use crate::model::{FacetDistribution, FacetMasking, InternalReflection, MaterialKind};
+use etalon_optics::Spectrum;
 
 crate::record! {
     /// A diffuse ground under a clear coat, seen from vacuum, on both sides unless "sides" says otherwise.
@@ -30,8 +32,11 @@ crate::record! {
         distribution: Required<FacetDistribution> = r#""ggx""#,
         /// How facets hide each other from reflected light.
         masking: Required<FacetMasking> = r#""correlated""#,
-        /// Whether the base colours light each time that the coat reflects it back down ("coloured") or only once ("uncoloured").
+        /// Whether the base colours light each time that the coat reflects it back down ("coloured") or only once ("uncoloured"), or whether
+        /// that light is lost ("lost").
         internal_reflection: Required<InternalReflection> = r#""coloured""#,
+        /// Share of the light that the coat reflects, from 0 to 1, that is left; all if left out. The ground is not tinted.
+        reflected_tint: Optional<SpectrumForm>,
         /// Which sides reflect; another is black.
         sides: Required<MaterialSides> = r#""both""#,
     } with [
@@ -49,6 +54,8 @@ crate::keywords!(InternalReflection {
     "coloured" => Self::Coloured,
     /// As if the base were white from the second time on, as other renderers have it: ρ/(1 − rᵢ).
     "uncoloured" => Self::Uncoloured,
+    /// It is lost. Light goes in and out as through a smooth coat, each time once: T(µₒ) T(µᵢ) ρ/π.
+    "lost" => Self::Lost,
 });
 
 /// The material of a form.
@@ -62,7 +69,11 @@ pub(super) fn plastic<'f>(
         plastic.reflectance.as_ref().and_then(|form| spectra.resolve_texture(form, Role::Reflectance, files, reader));
     let coat = plastic.coat.as_ref().and_then(|form| index(form, spectra.range_nm, reader));
     let roughness = roughness(&roughness_keys!(plastic), files, reader);
-    let (reflectance, coat, roughness) = (reflectance?, coat?, roughness?);
+    let tint = match plastic.reflected_tint.is_present() {
+        true => tint(&plastic.reflected_tint, spectra, files, reader).map(Some),
+        false => Some(None),
+    };
+    let (reflectance, coat, roughness, tint) = (reflectance?, coat?, roughness?, tint?);
     let internal_reflection = plastic.internal_reflection?;
     // As in glass from inside: where total reflection begins, tables of two widths cannot say.
     if roughness.has_two_widths() && spectra.range_nm.is_some_and(|range_nm| least(&coat, range_nm) < 1.0) {
@@ -71,11 +82,17 @@ pub(super) fn plastic<'f>(
         reader.error_hint(Code::OutOfRange, plastic.at.head(), message, hint);
         return None;
     }
-    let kind = roughness.material(|facets| MaterialKind::Plastic {
-        reflectance: reflectance.clone(),
-        coat: coat.clone(),
-        facets,
-        internal_reflection,
+    let kind = roughness.material(|facets| {
+        let (reflectance, coat) = (reflectance.clone(), coat.clone());
+        let kind = MaterialKind::Plastic { reflectance, coat, facets, internal_reflection };
+        match &tint {
+            None => kind,
+            Some(tint) => MaterialKind::Tinted {
+                kind: Box::new(kind),
+                reflected: tint.clone(),
+                transmitted: Spectrum::Constant(1.0).into(),
+            },
+        }
     });
     Some(plastic.sides?.of(kind))
 }

@@ -12,7 +12,7 @@ use crate::texture::ImageTexture;
 /// is less than a step of an image of eight bits makes.
 const RATIO: f64 = 1.05;
 /// The most widths that an image of roughness makes: from [`LEAST_ALPHA`] to 1, and a smooth one.
-pub(super) const MOST_WIDTHS: usize = 97;
+pub const MOST_WIDTHS: usize = 97;
 
 /// Of what kind facets are, of any width.
 #[derive(Clone, Copy)]

@@ -18,11 +18,21 @@ pub(super) fn tinted<'f>(
     if !reflected.is_present() && !transmitted.is_present() {
         return Some(kind);
     }
-    let mut share = |form: &'f Optional<SpectrumForm>| match form {
+    let reflected = tint(reflected, spectra, files, reader);
+    let transmitted = tint(transmitted, spectra, files, reader);
+    Some(MaterialKind::Tinted { kind: Box::new(kind), reflected: reflected?, transmitted: transmitted? })
+}
+
+/// The share that is left by a key; all if it is absent.
+pub(super) fn tint<'f>(
+    form: &'f Optional<SpectrumForm>,
+    spectra: &mut Spectra<'f>,
+    files: &mut Files,
+    reader: &mut Reader<'_>,
+) -> Option<SpectrumTexture> {
+    match form {
         Optional::Absent => Some(SpectrumTexture::Uniform(Spectrum::Constant(1.0))),
         Optional::Invalid => None,
         Optional::Given(form) => spectra.resolve_texture(form, Role::Reflectance, files, reader),
-    };
-    let (reflected, transmitted) = (share(reflected), share(transmitted));
-    Some(MaterialKind::Tinted { kind: Box::new(kind), reflected: reflected?, transmitted: transmitted? })
+    }
 }
