@@ -304,6 +304,12 @@ fn what_is_wrong_with_an_image_of_numbers_is_said() {
         (rough.replace("0.5,", "0.5, \"alpha_u\": 0.1, \"alpha_v\": 0.2,"), SQUARE, Code::KeyConflict),
         // Where total reflection begins, tables of two widths cannot say.
         (brushed.replace("0.4", "0.4, \"coat\": 0.99"), SQUARE, Code::OutOfRange),
+        (brushed.replace("0.4", "0.4, \"multiple_scattering\": \"lost\""), SQUARE, Code::KeyConflict),
+        (
+            rough.replace("0.5,", "0.5, \"internal_reflection\": \"lost\", \"multiple_scattering\": \"lost\","),
+            SQUARE,
+            Code::KeyConflict,
+        ),
         (glass.replace("lost", "compensated"), SQUARE, Code::KeyConflict),
         (rough.replace("0.5,", "0.5, \"tangent_rotation_deg\": 20,"), SQUARE, Code::MissingKey),
         (film(""), SQUARE, Code::MissingKey),

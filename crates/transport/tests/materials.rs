@@ -42,7 +42,10 @@ fn smooth_plastic_has_the_albedo_of_its_closed_form() {
     for rho in [0.2, 0.8, 1.0] {
         let plastic = |internal_reflection| {
             let (reflectance, coat) = (Spectrum::Constant(rho).into(), RefractiveIndex::Constant(n));
-            Bsdf::new(&MaterialKind::Plastic { reflectance, coat, facets: None, internal_reflection }, RANGE_NM)
+            Bsdf::new(
+                &MaterialKind::Plastic { reflectance, coat, facets: None, internal_reflection, compensated: true },
+                RANGE_NM,
+            )
         };
         let (bsdf, uncoloured) = (plastic(InternalReflection::Coloured), plastic(InternalReflection::Uncoloured));
         for mu in [1.0, 0.5, 0.1] {
@@ -257,6 +260,7 @@ fn a_material_by_images_is_the_material_that_they_say() {
         coat: RefractiveIndex::Constant(1.5),
         facets: Some(alpha.into()),
         internal_reflection: InternalReflection::Coloured,
+        compensated: true,
     };
     let places = [0.25, 0.5, 1.0];
     let varied = |roughness: f32| MaterialKind::Blend {
@@ -285,6 +289,7 @@ fn a_material_by_images_is_the_material_that_they_say() {
             coat: RefractiveIndex::Constant(1.5),
             facets: None,
             internal_reflection: InternalReflection::Coloured,
+            compensated: true,
         };
         let image = || SpectrumTexture::Image(texel(0.5));
         let uniform = || SpectrumTexture::from(Spectrum::Constant(0.5));

@@ -43,7 +43,7 @@ def lobes(roughness, anisotropic=0, metallic=0, tint=0, sheen=0, flatness=0, coa
     return Case("principled-lobes", given | dict(sheen=sheen, flatness=flatness, coat=coat, glass=glass), None, samples, (), variant)
 
 
-LOSES = Known("Mitsuba's rough plastic loses light: a white one in a white furnace reads 0.79, ours 0.999", 0.11)
+SUM = Known("what a rough coat returns from below is a sum over 64 cosines in Mitsuba, 1.5 % less than the integral", 0.02)
 BENT = Known("light that a bent normal sends through the surface is lost in Mitsuba; without the sky both agree", 0.006)
 EQUAL_ENERGY = Known(
     "an image that shines is of equal energy in Mitsuba's spectral variants, of D65 in its RGB variants and here",
@@ -61,7 +61,8 @@ CASES = [
     of("sides", sides="two"),
     of("plastic", kind="plastic", nonlinear="false"),
     of("plastic", kind="plastic", nonlinear="true"),
-    of("rough-plastic", LOSES, alpha=0.2),
+    *(of("rough-plastic", SUM, alpha=alpha, distribution=distribution, nonlinear=nonlinear)
+      for alpha, distribution, nonlinear in ((0.2, "ggx", "true"), (0.1, "beckmann", "false"), (0.5, "beckmann", "true"))),
     of("tinted-plastic"),
     *(of("pplastic", alpha=alpha) for alpha in (0.1, 0.3)),
     *(of("metal", metal=metal) for metal in ("Ag", "Al", "Au", "Cr", "Cu", "W")),

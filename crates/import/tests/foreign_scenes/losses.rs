@@ -70,6 +70,9 @@ fn facets_of_mitsuba_are_beckmann_s_unless_it_says_otherwise() {
             let expected = Microfacets { distribution, masking: FacetMasking::Separable, ..0.25.into() };
             assert_eq!(kind.microfacets().collect::<Vec<_>>(), [&expected], "{plugin} {keys}");
             assert!(said.iter().all(|line| line.contains("rough coat")), "{said:?}");
+            if let MaterialKind::Plastic { compensated, .. } = kind {
+                assert!(!compensated, "what facets hide is lost there");
+            }
         }
     }
     let other = "<scene version=\"3.0.0\"><shape type=\"sphere\"><bsdf type=\"roughconductor\">\

@@ -42,6 +42,7 @@ mod lamps_behind_glass;
 mod lens_tracer;
 mod light_paths;
 mod lit_fog;
+mod lossy_coats;
 mod luminous;
 mod masks;
 mod measured;
@@ -354,7 +355,7 @@ pub fn truths() -> Vec<Truth> {
     LIST.clone()
 }
 
-const GROUPS: [fn() -> Vec<Truth>; 51] = [
+const GROUPS: [fn() -> Vec<Truth>; 52] = [
     lamps_behind_glass::truths,
     furnaces::truths,
     beckmann::truths,
@@ -392,6 +393,7 @@ const GROUPS: [fn() -> Vec<Truth>; 51] = [
     named::truths,
     skies::truths,
     surfaces::truths,
+    lossy_coats::truths,
     tints::truths,
     translucent::truths,
     measured::truths,

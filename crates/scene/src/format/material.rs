@@ -185,7 +185,7 @@ pub(crate) enum MultipleScattering {
 }
 
 crate::keywords!(MultipleScattering {
-    /// A diffuse lobe gives back what single scattering loses.
+    /// What single scattering loses comes back: by a diffuse lobe, or by the base below a coat.
     "compensated" => Self::Compensated,
     /// Single scattering only, as most renderers do: rough surfaces are too dark.
     "lost" => Self::Lost,

@@ -193,6 +193,8 @@ pub enum MaterialKind {
         facets: Option<Microfacets>,
         /// What becomes of light that the coat reflects back down.
         internal_reflection: InternalReflection,
+        /// Whether light that the coat's facets hide from one another enters the ground; otherwise it is lost.
+        compensated: bool,
     },
     /// A pane without thickness.
     ThinDielectric {

@@ -177,6 +177,7 @@ fn materials_and_spectra() {
         coat,
         facets: Some(apart(0.1.into())),
         internal_reflection: InternalReflection::Uncoloured,
+        compensated: false,
     };
     assert_eq!(kind(&scene, "toy"), &toy);
     let tinted = |kind, shares: [f64; 2]| {
@@ -190,8 +191,13 @@ fn materials_and_spectra() {
     let bronzed = MaterialKind::OneSided { kind: Box::new(tinted(silver, [0.5, 1.0])), side: Side::Front };
     assert_eq!(kind(&scene, "bronzed"), &bronzed);
     let (reflectance, coat) = (Spectrum::Constant(0.25).into(), RefractiveIndex::Constant(1.5));
-    let lacquered =
-        MaterialKind::Plastic { reflectance, coat, facets: None, internal_reflection: InternalReflection::Lost };
+    let lacquered = MaterialKind::Plastic {
+        reflectance,
+        coat,
+        facets: None,
+        internal_reflection: InternalReflection::Lost,
+        compensated: true,
+    };
     assert_eq!(kind(&scene, "lacquered"), &tinted(lacquered, [0.5, 1.0]));
     let jar = scene.materials.iter().find(|material| material.name == "jar").expect("a jar");
     assert_eq!(&jar.kind, kind(&scene, "pane"));

@@ -115,6 +115,10 @@ pub(crate) enum Tabulated {
     Mirrors,
     /// What facets of a coat let in.
     Coat,
+    /// The same, of a coat that loses what facets hide.
+    LossyCoat,
+    /// What such a coat reflects from below.
+    UnderCoat,
     /// What facets between two media lose of light from before them.
     Outside,
     /// What they lose of light from behind them.

@@ -37,6 +37,14 @@ pub(super) fn polarised_loss(distribution: &Distribution, facet: &Facet, eta: f6
     [lost, 0.5 * (f.r_s * f.r_s - f.r_p * f.r_p) * (passed - facet.mirrored)]
 }
 
+/// What a facet lets by: (T₀, T₁), of unpolarised light what it refracts and no other facet stops, and how much more of s than of p, halved.
+pub(super) fn let_by(distribution: &Distribution, facet: &Facet, eta: f64) -> [f64; 2] {
+    let Some(f) = fresnel::dielectric(facet.cos, eta) else { return [0.0; 2] };
+    let passed = passed(distribution, facet, eta, f.cos_t);
+    let difference = 0.5 * (f.r_s * f.r_s - f.r_p * f.r_p);
+    [f.transmittance * passed, -difference * passed]
+}
+
 /// Mean of Fresnel's T over diffuse light that arrives at an interface of relative index `eta`.
 pub(super) fn mean_transmittance(eta: f64) -> f64 {
     // Each nanometre of a spectrum asks: the rule took ten times as long as the integral.

@@ -200,9 +200,9 @@ impl Bsdf {
                     [reflectance, transmittance].map(|texture| PathTexture::new(texture, range_nm));
                 Self::Translucent(Translucent::new(reflectance, transmittance))
             }
-            MaterialKind::Plastic { reflectance, coat, facets, internal_reflection } => {
+            MaterialKind::Plastic { reflectance, coat, facets, internal_reflection, compensated } => {
                 let reflectance = PathTexture::new(reflectance, range_nm);
-                let facets = facets.as_ref();
+                let facets = facets.as_ref().map(|facets| (facets, *compensated));
                 Self::Plastic(Plastic::new(reflectance, coat.clone(), facets, *internal_reflection, range_nm))
             }
             MaterialKind::ThinDielectric { index, film } => {

@@ -4,14 +4,15 @@
 //! does not get out is reflected back down, r_i of it, by the inside of the coat:
 //! f = f_coat + T(µ_o) T(µ_i)·ρ/(π n² (1 − ρ r_i)), r_i = 1 − T_avg/n². The relation of r_i to T_avg = 2∫Tµ dµ is étendue's, so
 //! that a white ground returns all that the coat lets in (Walsh 1926; Duntley 1942). T is exact for a smooth coat; for a
-//! rough one 1 − R of its facets, tabulated. Facets of the coat that hide each other pass their light to the ground.
-//! Where the light that is reflected back down is lost, the ground is f = T(µ_o) T(µ_i)·ρ/π of a smooth T, as of a polarised model of plastic
-//! in another renderer.
+//! rough one 1 − R of its facets, tabulated: light that facets hide from one another enters the ground.
+//! Or that light is lost: T is then what facets refract and do not hide, and r_i is what they reflect from below and do not hide, less than
+//! 1 − T_avg/n².
+//! Where the light that is reflected back down is lost, the ground is f = T(µ_o) T(µ_i)·ρ/π of a smooth T. Both are models of other renderers.
 //!
 //! A tint multiplies what the coat reflects, f_coat, and nothing else.
 
 use super::albedo::{self, Azimuths, LossTable, Tabulated};
-use super::glass_losses::mean_transmittance;
+use super::glass_losses::{let_by, mean_transmittance};
 use super::microfacet::{Distribution, Facet, Facing, MEAN_ERROR, mean_over_facets};
 use super::mueller::{Lobe, PolarisedLoss};
 use super::{BsdfSample, Properties, Shading};
@@ -30,17 +31,17 @@ use std::sync::Arc;
 pub struct Plastic {
     reflectance: PathTexture,
     coat: RefractiveIndex,
-    /// T_avg of the coat from outside.
-    mean_transmittance: PathSpectrum,
+    /// 1 − r_i: of diffuse light from below, what the coat does not return.
+    let_out: PathSpectrum,
     internal_reflection: InternalReflection,
     rough: Option<Box<Rough>>,
     /// Share that is left of what the coat reflects, and its mean over the spectrum.
     tint: Option<Box<(PathTexture, f64)>>,
     /// Whether the coat's index depends on the wavelength.
     dispersive: bool,
-    /// Index of the coat by which the lobe is chosen, and the ground's share in it: every wavelength chooses alike.
+    /// Index of the coat by which the lobe is chosen: every wavelength chooses alike.
     reference: f64,
-    /// (at the mean of an image).
+    /// What the ground gives back of light that the coat let in, the mean over wavelengths and over an image; for that choice.
     ground: f64,
 }
 
@@ -51,60 +52,66 @@ struct Rough {
     transmittance: Option<Arc<LossTable>>,
     /// The least and the largest index.
     eta: [f64; 2],
+    /// Whether light that facets hide enters the ground.
+    compensated: bool,
     /// What the coat lets in of polarised light, where that is carried.
     polarised: Option<Arc<PolarisedLoss>>,
 }
 
+/// What comes back from the ground under a coat, at one wavelength.
+#[derive(Clone, Copy)]
+struct Ground {
+    /// n² of the coat.
+    n2: f64,
+    /// 1 − r_i of the coat.
+    let_out: f64,
+    internal_reflection: InternalReflection,
+}
+
 impl Plastic {
-    /// A ground of albedo `reflectance` under a coat of index `coat`, smooth if it has no facets.
+    /// A ground of albedo `reflectance` under a coat of index `coat`, smooth if it has no facets. With them stands whether light that they hide
+    /// enters the ground.
     pub fn new(
         reflectance: PathTexture,
         coat: RefractiveIndex,
-        facets: Option<&Microfacets>,
+        facets: Option<(&Microfacets, bool)>,
         internal_reflection: InternalReflection,
         range_nm: [f64; 2],
     ) -> Self {
         let [first, last] = range_nm;
         let steps = || (0..=64).map(move |i| first + (last - first) * f64::from(i) / 64.0);
-        let rough = facets.map(|facets| {
+        let eta = albedo::extremes(range_nm, |nm| coat.eval(nm));
+        let rough = facets.map(|(facets, compensated)| {
             let distribution = Distribution::new(facets);
-            let eta = albedo::extremes(range_nm, |nm| coat.eval(nm));
-            let reflected = |facet: f64, eta: f64| fresnel::dielectric(facet, eta).map_or(1.0, |f| f.reflectance);
             let through_facets = internal_reflection != InternalReflection::Lost;
-            let transmittance = through_facets.then(|| {
-                albedo::shared(Tabulated::Coat, &distribution, eta, || {
-                    LossTable::new(Azimuths::of(&distribution), eta, MEAN_ERROR, |wo, eta| {
-                        1.0 - mean_over_facets(&distribution, wo, Some(eta), |facet| {
-                            reflected(facet.cos, eta) * facet.mirrored
-                        })
-                    })
-                })
-            });
-            Box::new(Rough { distribution, transmittance, eta, polarised: None })
+            let transmittance = through_facets.then(|| coat_table(&distribution, eta, compensated));
+            Box::new(Rough { distribution, transmittance, eta, compensated, polarised: None })
         });
         let table = rough.as_ref().and_then(|rough| rough.transmittance.as_ref());
-        let mean_transmittance = PathSpectrum::tabulate(range_nm, |nm| match table {
-            Some(table) => table.average(coat.eval(nm)),
-            None => mean_transmittance(coat.eval(nm)),
+        let mean_transmittance = |index: f64| match table {
+            Some(table) => table.average(index),
+            None => mean_transmittance(index),
+        };
+        let returned = match &rough {
+            Some(rough) if !rough.compensated => Some(returned_table(&rough.distribution, eta)),
+            _ => None,
+        };
+        let let_out = PathSpectrum::tabulate(range_nm, |nm| {
+            let index = coat.eval(nm);
+            match &returned {
+                Some(table) => 1.0 - table.average(index),
+                None => mean_transmittance(index) / (index * index),
+            }
         });
         let middle = 0.5 * (first + last);
-        let mut plastic = Self {
-            dispersive: coat.is_dispersive(),
-            reference: coat.eval(middle),
-            ground: 0.0,
-            internal_reflection,
-            reflectance,
-            coat,
-            mean_transmittance,
-            rough,
-            tint: None,
+        let (dispersive, reference) = (coat.is_dispersive(), coat.eval(middle));
+        let base = |nm: f64| {
+            let index = coat.eval(nm);
+            let ground = Ground { n2: index * index, let_out: let_out.eval(nm), internal_reflection };
+            ground.of(reflectance.mean(nm)) * mean_transmittance(index)
         };
-        let ground = |nm: f64| {
-            let rho = plastic.reflectance.mean(nm);
-            plastic.ground(nm, plastic.coat.eval(nm), rho) * plastic.mean_transmittance.eval(nm)
-        };
-        plastic.ground = steps().map(ground).sum::<f64>() / 65.0;
-        plastic
+        let ground = steps().map(base).sum::<f64>() / 65.0;
+        Self { reflectance, coat, let_out, internal_reflection, rough, tint: None, dispersive, reference, ground }
     }
 
     /// The same, of whose coat's reflection a share is left.
@@ -127,14 +134,10 @@ impl Plastic {
         }
     }
 
-    /// ρ/(n²(1 − ρ r_i)) of a coat of index `n`; where the ground colours light only once, ρ/(n²(1 − r_i)); where that light is lost, ρ.
-    fn ground(&self, wavelength_nm: f64, n: f64, rho: f64) -> f64 {
-        let inward = self.mean_transmittance.eval(wavelength_nm) / (n * n);
-        match self.internal_reflection {
-            InternalReflection::Coloured => rho / (n * n * (1.0 - rho * (1.0 - inward))),
-            InternalReflection::Uncoloured => rho / (n * n * inward),
-            InternalReflection::Lost => rho,
-        }
+    /// How light comes back from the ground under a coat of this index.
+    fn ground(&self, wavelength_nm: f64, n: f64) -> Ground {
+        let (let_out, internal_reflection) = (self.let_out.eval(wavelength_nm), self.internal_reflection);
+        Ground { n2: n * n, let_out, internal_reflection }
     }
 
     /// The frame of the coat's facets.
@@ -193,7 +196,7 @@ impl Plastic {
             });
             let [(t_o, a_o), (t_i, a_i)] =
                 [local_o, local_i].map(|w| (self.transmittance(w, index), self.diattenuation(w, index)));
-            let ground = t_o * t_i * self.ground(nm, index, reflectance[lane]) * FRAC_1_PI;
+            let ground = t_o * t_i * self.ground(nm, index).of(reflectance[lane]) * FRAC_1_PI;
             let s = |w: Vec3<f64>| self.rough.as_ref().map_or(n.cross(w), |rough| rough.distribution.s(&facing, n, w));
             mueller::mixed([coat, (ground, super::mueller::forgotten(s, (wo, wi, x), a_o, a_i))])
         }))
@@ -202,13 +205,18 @@ impl Plastic {
     /// Makes the table that [`Plastic::mueller`] needs: what the facets of a rough coat do not reflect of each state they let in.
     pub(super) fn prepare_polarisation(&mut self) {
         if let Some(rough) = self.rough.as_mut().filter(|rough| rough.transmittance.is_some()) {
-            rough.polarised = Some(PolarisedLoss::shared(Tabulated::Coat, rough.eta, &rough.distribution, let_in));
+            let Rough { distribution, eta, .. } = &**rough;
+            rough.polarised = Some(match rough.compensated {
+                true => PolarisedLoss::shared(Tabulated::Coat, *eta, distribution, let_in),
+                false => PolarisedLoss::shared(Tabulated::LossyCoat, *eta, distribution, |facet, eta| {
+                    let_by(distribution, facet, eta)
+                }),
+            });
         }
     }
 
-    /// The probability of the coat's lobe.
-    fn coat_share(&self, wo: Vec3<f64>) -> f64 {
-        let passed = self.transmittance(wo, self.reference);
+    /// The probability of the coat's lobe, where the coat lets in this share at its index of reference.
+    fn coat_share(&self, passed: f64) -> f64 {
         let (mut coat, ground) = (1.0 - passed, passed * self.ground);
         if let Some(tint) = &self.tint {
             // A tenth is drawn for places of an image that are brighter than its mean.
@@ -227,35 +235,48 @@ impl Plastic {
         wi: Vec3<f64>,
     ) -> (Lanes<f64, N>, Lanes<f64, N>) {
         let Some(facing) = self.facing(at, n, wo) else { return (Lanes::ZERO, Lanes::ZERO) };
+        self.eval_facing(lambda_nm, at, &facing, self.transmittance(facing.wo, self.reference), wi)
+    }
+
+    /// The same of a coat whose frame is known, and what it lets in along `wo` at its index of reference.
+    fn eval_facing<const N: usize>(
+        &self,
+        lambda_nm: &Lanes<f64, N>,
+        at: &Shading<'_>,
+        facing: &Facing,
+        passed_o: f64,
+        wi: Vec3<f64>,
+    ) -> (Lanes<f64, N>, Lanes<f64, N>) {
         let (wo, wi) = (facing.wo, facing.local(wi));
         if wi.z <= 0.0 {
             return (Lanes::ZERO, Lanes::ZERO);
         }
-        let share = self.coat_share(wo);
         let facets = self.rough.as_ref().map(|rough| rough.distribution.reflection(wo, wi));
         let diffuse = wi.z * FRAC_1_PI;
         let reflectance: Lanes<f64, N> = self.reflectance.lanes(lambda_nm, at.texture_point());
         let left = self.left(lambda_nm, at);
-        // T(µ_o) T(µ_i), and f·|cos θ_i| of the coat's facets without its tint.
-        let coat = |index: f64| {
-            let passed = self.transmittance(wo, index) * self.transmittance(wi, index);
+        // T(µ_o) T(µ_i), what the ground makes of it, and f·|cos θ_i| of the coat's facets without its tint.
+        let coat = |nm: f64, index: f64, passed_o: f64| {
+            let passed = passed_o * self.transmittance(wi, index);
             let reflected = facets.as_ref().map_or(0.0, |facets| {
                 let reflectance = fresnel::dielectric(facets.cos, index).map_or(1.0, |f| f.reflectance);
                 reflectance * facets.term * wi.z
             });
-            (passed, reflected)
+            (passed, self.ground(nm, index), reflected)
         };
         // Without dispersion, the coat does the same in every lane.
-        let of_all = (!self.dispersive).then(|| coat(self.reference));
+        let of_all = (!self.dispersive).then(|| coat(lambda_nm[0], self.reference, passed_o));
         let f_cos = Lanes::from_fn(|lane| {
-            let nm = lambda_nm[lane];
-            let index = if self.dispersive { self.coat.eval(nm) } else { self.reference };
-            let (passed, mut reflected) = of_all.unwrap_or_else(|| coat(index));
+            let (passed, ground, mut reflected) = of_all.unwrap_or_else(|| {
+                let index = self.coat.eval(lambda_nm[lane]);
+                coat(lambda_nm[lane], index, self.transmittance(wo, index))
+            });
             if let Some(left) = &left {
                 reflected *= left[lane];
             }
-            passed * self.ground(nm, index, reflectance[lane]) * diffuse + reflected
+            passed * ground.of(reflectance[lane]) * diffuse + reflected
         });
+        let share = self.coat_share(passed_o);
         let mut density = (1.0 - share) * diffuse;
         if let Some(facets) = &facets {
             density += share * facets.density;
@@ -273,16 +294,20 @@ impl Plastic {
     ) -> Option<BsdfSample<N>> {
         let facing = self.facing(at, n, wo)?;
         let [u_lobe, u1, u2] = u;
-        let mu = facing.wo.z.min(1.0);
-        let share = self.coat_share(facing.wo);
+        let passed = self.transmittance(facing.wo, self.reference);
+        let share = self.coat_share(passed);
         let wi = match &self.rough {
             _ if u_lobe >= share => facing.world(cosine_hemisphere([u1, u2])),
             Some(rough) => {
                 facing.world(facing.wo.reflected_about(rough.distribution.visible_normal(facing.wo, [u1, u2])))
             }
             None => {
-                let reflected = |nm: f64| fresnel::dielectric(mu, self.coat.eval(nm)).map_or(1.0, |f| f.reflectance);
-                let mut weight = Lanes::from_fn(|lane| reflected(lambda_nm[lane]) / share);
+                let mu = facing.wo.z.min(1.0);
+                let reflected = |index: f64| fresnel::dielectric(mu, index).map_or(1.0, |f| f.reflectance) / share;
+                let mut weight = match self.dispersive {
+                    true => Lanes::from_fn(|lane| reflected(self.coat.eval(lambda_nm[lane]))),
+                    false => Lanes::splat(reflected(self.reference)),
+                };
                 if let Some(left) = self.left(lambda_nm, at) {
                     weight *= left;
                 }
@@ -295,9 +320,44 @@ impl Plastic {
                 });
             }
         };
-        let (f_cos, density) = self.eval(lambda_nm, n, at, wo, wi);
+        let (f_cos, density) = self.eval_facing(lambda_nm, at, &facing, passed, wi);
         BsdfSample::scattered(wi, f_cos, density, 1.0)
     }
+}
+
+impl Ground {
+    /// ρ/(n²(1 − ρ r_i)); where the ground colours light only once, ρ/(n²(1 − r_i)); where that light is lost, ρ.
+    #[inline(always)]
+    fn of(self, rho: f64) -> f64 {
+        let Self { n2, let_out, internal_reflection } = self;
+        match internal_reflection {
+            InternalReflection::Coloured => rho / (n2 * (1.0 - rho * (1.0 - let_out))),
+            InternalReflection::Uncoloured => rho / (n2 * let_out),
+            InternalReflection::Lost => rho,
+        }
+    }
+}
+
+/// What facets of a coat let in, whose index lies within `eta`.
+fn coat_table(distribution: &Distribution, eta: [f64; 2], compensated: bool) -> Arc<LossTable> {
+    let reflected = |cos: f64, eta: f64| fresnel::dielectric(cos, eta).map_or(1.0, |f| f.reflectance);
+    let let_in = |wo: Vec3<f64>, eta: f64| match compensated {
+        true => 1.0 - mean_over_facets(distribution, wo, Some(eta), |f| reflected(f.cos, eta) * f.mirrored),
+        false => mean_over_facets(distribution, wo, Some(eta), |facet| let_by(distribution, facet, eta)[0]),
+    };
+    let of = if compensated { Tabulated::Coat } else { Tabulated::LossyCoat };
+    albedo::shared(of, distribution, eta, || LossTable::new(Azimuths::of(distribution), eta, MEAN_ERROR, let_in))
+}
+
+/// What they reflect of light from below.
+fn returned_table(distribution: &Distribution, eta: [f64; 2]) -> Arc<LossTable> {
+    albedo::shared(Tabulated::UnderCoat, distribution, eta, || {
+        LossTable::new(Azimuths::All, eta, MEAN_ERROR, |wo, eta| {
+            mean_over_facets(distribution, wo, Some(1.0 / eta), |facet| {
+                facet.mirrored * fresnel::dielectric(facet.cos, 1.0 / eta).map_or(1.0, |f| f.reflectance)
+            })
+        })
+    })
 }
 
 /// What a facet of a coat of index `eta` lets in: (T₀, T₁), all of unpolarised light but what leaves by reflection, and how much more

@@ -137,7 +137,7 @@ mod tests {
         for facets in [None, Some(0.3.into()), Some(grained)] {
             let (reflectance, coat) = (Spectrum::Constant(0.5).into(), interior.clone());
             let internal_reflection = InternalReflection::Coloured;
-            kinds.push(MaterialKind::Plastic { reflectance, coat, facets, internal_reflection });
+            kinds.push(MaterialKind::Plastic { reflectance, coat, facets, internal_reflection, compensated: true });
         }
         for kind in [1, 2, 3, 7] {
             let [reflected, transmitted] = [0.5, 0.25].map(|share| Spectrum::Constant(share).into());

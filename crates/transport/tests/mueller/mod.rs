@@ -47,7 +47,16 @@ fn plastic(rho: f64, alpha: f64) -> MaterialKind {
         coat: RefractiveIndex::Constant(1.5),
         facets: facets(alpha),
         internal_reflection: InternalReflection::Coloured,
+        compensated: true,
     }
+}
+
+/// Plastic whose coat loses what its facets hide.
+fn lossy_plastic(rho: f64, alpha: f64) -> MaterialKind {
+    let MaterialKind::Plastic { reflectance, coat, facets, internal_reflection, .. } = plastic(rho, alpha) else {
+        unreachable!("it is plastic")
+    };
+    MaterialKind::Plastic { reflectance, coat, facets, internal_reflection, compensated: false }
 }
 
 /// Plastic in a medium denser than its coat.
@@ -57,6 +66,7 @@ fn plastic_in_glass(alpha: f64) -> MaterialKind {
         coat: RefractiveIndex::Constant(0.8),
         facets: facets(alpha),
         internal_reflection: InternalReflection::Coloured,
+        compensated: true,
     }
 }
 
@@ -106,6 +116,7 @@ fn matrices_are_physical_and_reciprocal() {
         (rough_glass(1.0, true), true),
         (plastic(0.5, 0.0), false),
         (plastic(1.0, 0.4), false),
+        (lossy_plastic(1.0, 0.4), false),
         (blend(), false),
         (MaterialKind::Lambert { reflectance: Spectrum::Constant(0.5).into() }, false),
     ] {
@@ -186,6 +197,7 @@ fn rough_surfaces_join_smooth_ones() {
         (glass(1.5, 1.0), rough_glass(alpha, true)),
         (MaterialKind::Conductor { metal: metal(0.2, 3.0), film: None }, rough_metal(0.2, 3.0, alpha)),
         (smooth_plastic, rough_plastic),
+        (plastic(0.5, 0.0), lossy_plastic(0.5, alpha)),
     ] {
         let (smooth, rough) = (bsdf(&smooth), bsdf(&rough));
         for wo in [direction(0.6, 0.2), direction(0.3, 0.0), -direction(0.9, 0.6)] {
@@ -325,6 +337,7 @@ fn around_a_shading_normal_frames_belong_to_both_rays() {
         rough_metal(0.2, 3.0, 0.3),
         rough_glass(0.3, true),
         plastic(0.5, 0.3),
+        lossy_plastic(0.5, 0.3),
     ] {
         let bsdf = bsdf(&kind);
         for (i, [a, b, c]) in points(400).enumerate() {

@@ -132,6 +132,7 @@ fn plastic(rho: f64, alpha: f64) -> Material {
         coat,
         facets: (alpha > 0.0).then(|| alpha.into()),
         internal_reflection: InternalReflection::Coloured,
+        compensated: true,
     })
 }
 
@@ -139,7 +140,7 @@ fn plastic(rho: f64, alpha: f64) -> Material {
 fn coloured_once(rho: f64, alpha: f64) -> Material {
     let (reflectance, coat) = (Spectrum::Constant(rho).into(), RefractiveIndex::Constant(1.5));
     let (facets, internal_reflection) = ((alpha > 0.0).then(|| alpha.into()), InternalReflection::Uncoloured);
-    Material::new(MaterialKind::Plastic { reflectance, coat, facets, internal_reflection })
+    Material::new(MaterialKind::Plastic { reflectance, coat, facets, internal_reflection, compensated: true })
 }
 
 fn oren_nayar(rho: f64, roughness: f64) -> Material {
@@ -214,6 +215,7 @@ fn painted_plastic() -> Material {
         coat: RefractiveIndex::Constant(1.5),
         facets: Some(0.3.into()),
         internal_reflection: InternalReflection::Coloured,
+        compensated: true,
     })
 }
 
@@ -285,6 +287,7 @@ fn brushed_plastic() -> Material {
         coat,
         facets: Some(brushed(0.2, 0.6)),
         internal_reflection: InternalReflection::Coloured,
+        compensated: true,
     })
 }
 
@@ -329,6 +332,7 @@ fn beckmann_plastic() -> Material {
         coat: RefractiveIndex::Constant(1.5),
         facets: Some(gaussian(0.4.into(), FacetMasking::Correlated)),
         internal_reflection: InternalReflection::Coloured,
+        compensated: true,
     })
 }
 
@@ -375,15 +379,25 @@ fn tinted(of: Material) -> Material {
 
 scatters_suite!(tinted_rough_glass, tinted(rough_glass("N-BK7", "vacuum", 0.4, false)));
 scatters_suite!(tinted_glass, tinted(glass("N-BK7", "vacuum")));
+
 /// Of whose ground no light comes back from below the coat.
 fn without_return(rho: f64, alpha: f64) -> Material {
     let (reflectance, coat) = (Spectrum::Constant(rho).into(), RefractiveIndex::Constant(1.5));
     let (facets, internal_reflection) = ((alpha > 0.0).then(|| alpha.into()), InternalReflection::Lost);
-    Material::new(MaterialKind::Plastic { reflectance, coat, facets, internal_reflection })
+    Material::new(MaterialKind::Plastic { reflectance, coat, facets, internal_reflection, compensated: true })
 }
 
 scatters_suite!(plastic_without_return, without_return(1.0, 0.0));
 scatters_suite!(rough_plastic_without_return, without_return(1.0, 0.3));
+/// Whose facets lose what they hide.
+fn hiding(internal_reflection: InternalReflection, alpha: f64) -> Material {
+    let (reflectance, coat) = (Spectrum::Constant(0.9).into(), RefractiveIndex::named("N-SF11").expect("a glass"));
+    let facets = Some(Microfacets { masking: FacetMasking::Separable, ..alpha.into() });
+    Material::new(MaterialKind::Plastic { reflectance, coat, facets, internal_reflection, compensated: false })
+}
+
+scatters_suite!(plastic_under_a_lossy_coat, hiding(InternalReflection::Coloured, 0.5));
+scatters_suite!(plastic_coloured_once_under_a_lossy_coat, hiding(InternalReflection::Uncoloured, 0.2));
 scatters_suite!(tinted_coat, tinted(plastic(0.7, 0.0)));
 scatters_suite!(tinted_rough_coat, tinted(plastic(0.7, 0.3)));
 

@@ -76,6 +76,7 @@ fn more_than_two_hundred_instances_of_laws_hold() {
             coat: RefractiveIndex::Constant(1.5),
             facets: None,
             internal_reflection: InternalReflection::Coloured,
+            compensated: true,
         },
         MaterialKind::ThinDielectric { index: RefractiveIndex::Constant(1.5), film: None },
         MaterialKind::PolarisingSheet { axis: [1.0, 0.0, 0.0], sheet: polariser },

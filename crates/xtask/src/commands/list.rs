@@ -345,6 +345,13 @@ pub(super) const COMMANDS: &[(&str, &[Named])] = &[
                 Script("tests/peers/mitsuba/compare.py"),
             ),
             named(
+                "compare-published",
+                "[OPTIONS] FOLDER [WORD …]",
+                "all scenes of a folder in Mitsuba's format, rendered by both programs; needs mitsuba",
+                "30 min for 100",
+                Script("tests/peers/mitsuba/published.py"),
+            ),
+            named(
                 "race",
                 "[OPTIONS]",
                 "time to a stated error, against every renderer that is installed",

@@ -5,7 +5,7 @@ use super::super::spectra::{Role, Spectra};
 use super::super::spectrum::SpectrumForm;
 use super::roughness::{RoughnessKeys, roughness, roughness_keys};
 use super::tint::tint;
-use super::{Alpha, IndexForm, MaterialSides, Width, index, least};
+use super::{Alpha, IndexForm, MaterialSides, MultipleScattering, Width, index, least};
 use crate::files::Files;
 use crate::json::{Code, Optional, Reader, Required, Rule, Spanned};
 use crate::model::{FacetDistribution, FacetMasking, InternalReflection, MaterialKind};
@@ -35,6 +35,9 @@ crate::record! {
         /// Whether the base colours light each time that the coat reflects it back down ("coloured") or only once ("uncoloured"), or whether
         /// that light is lost ("lost").
         internal_reflection: Required<InternalReflection> = r#""coloured""#,
+        /// What becomes of light that facets of a rough coat hide from where it goes. It enters the base ("compensated"), or is lost ("lost"),
+        /// as in other renderers. Facets of two widths lose none.
+        multiple_scattering: Required<MultipleScattering> = r#""compensated""#,
         /// Share of the light that the coat reflects, from 0 to 1, that is left; all if left out. The ground is not tinted.
         reflected_tint: Optional<SpectrumForm>,
         /// Which sides reflect; another is black.
@@ -75,6 +78,19 @@ pub(super) fn plastic<'f>(
     };
     let (reflectance, coat, roughness, tint) = (reflectance?, coat?, roughness?, tint?);
     let internal_reflection = plastic.internal_reflection?;
+    let compensated = plastic.multiple_scattering? == MultipleScattering::Compensated;
+    if !compensated && internal_reflection == InternalReflection::Lost {
+        let message =
+            "facets hide no light from a base whose \"internal_reflection\" is \"lost\": it sees a smooth coat";
+        reader.error_hint(Code::KeyConflict, plastic.at.head(), message, "leave \"multiple_scattering\" out");
+        return None;
+    }
+    if !compensated && roughness.has_two_widths() {
+        let message = "what facets of two widths hide cannot be lost in a coat";
+        let hint = "leave \"multiple_scattering\" out, or give one width \"alpha\"";
+        reader.error_hint(Code::KeyConflict, plastic.at.head(), message, hint);
+        return None;
+    }
     // As in glass from inside: where total reflection begins, tables of two widths cannot say.
     if roughness.has_two_widths() && spectra.range_nm.is_some_and(|range_nm| least(&coat, range_nm) < 1.0) {
         let message = "a coat of two widths must have an index of at least 1";
@@ -84,7 +100,7 @@ pub(super) fn plastic<'f>(
     }
     let kind = roughness.material(|facets| {
         let (reflectance, coat) = (reflectance.clone(), coat.clone());
-        let kind = MaterialKind::Plastic { reflectance, coat, facets, internal_reflection };
+        let kind = MaterialKind::Plastic { reflectance, coat, facets, internal_reflection, compensated };
         match &tint {
             None => kind,
             Some(tint) => MaterialKind::Tinted {

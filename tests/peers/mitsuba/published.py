@@ -1,0 +1,152 @@
+#!/usr/bin/env python3
+"""Renders all scenes of a folder in Mitsuba's format by Mitsuba 3 and by etalon, and compares the pictures.
+
+    pip install mitsuba==3.9.1 OpenEXR numpy
+    python3 tests/peers/mitsuba/published.py FOLDER [--etalon target/release/etalon] [--out OUT] [WORD ...]
+
+Each file .xml that no other includes is a scene; with words, only those whose path has one of them. Files that Mitsuba cannot load are left out.
+Pictures are small (`--width`). Mitsuba renders each scene in its spectral and in its RGB variant. Two pictures agree if for one of the variants
+
+- the mean of each channel differs by at most 4 standard errors or by at most 0.5 %, and
+- the mean of z² is below 1.6 over blocks of 4 × 4 pixels and below 2.2 over blocks of 8 × 8, or the difference beyond noise is at most 0.5 % of
+  the mean.
+
+OUT has the pictures and results.json. A scene that stands there is not rendered again.
+"""
+
+import argparse
+import json
+import pathlib
+import re
+import subprocess
+
+import numpy as np
+
+from compare import MOST_ERRORS, SMALL, channels
+
+HERE = pathlib.Path(__file__).resolve().parent
+VARIANTS = ("llvm_ad_spectral", "llvm_ad_rgb")
+PASSES = 16
+INCLUDED = re.compile(r"""<include\s+filename=["'](?:[^"']*[/\\])?([^"'/\\]+)["']""")
+# Mean z² over blocks of so many pixels, at most.
+MOST_SQUARES = {4: 1.6, 8: 2.2}
+
+
+def by_mitsuba(mi, scene, width, spp):
+    """Renders of this width: passes × rows × columns × channels."""
+    loaded = mi.load_file(str(scene))
+    params = mi.traverse(loaded)
+    key = next(key for key in params.keys() if key.endswith("film.size"))
+    full = [int(side) for side in np.array(params[key])]
+    size = [width, max(1, round(width * full[1] / full[0]))]
+    params[key] = size
+    if (crop := key.replace("film.size", "film.crop_size")) in params:
+        params[crop] = size
+    params.update()
+    passes = [np.array(mi.render(loaded, spp=max(spp // PASSES, 1), seed=seed), np.float64) for seed in range(PASSES)]
+    return np.array([np.repeat(image[..., :1], 3, 2) if image.shape[2] < 3 else image[..., :3] for image in passes])
+
+
+def blocks(values, side):
+    """Means over blocks of side × side pixels, of the last two axes."""
+    *rest, height, width = values.shape
+    rows, columns = height // side, width // side
+    return values[..., : rows * side, : columns * side].reshape(*rest, rows, side, columns, side).mean((-3, -1))
+
+
+def differences(ours, passes, side):
+    """Of blocks, how far our mean is from Mitsuba's, and the variance of that, for each channel. Mitsuba's filter makes the errors of neighbours
+    alike, so its variance is that of blocks among passes; our pixels are independent.
+    """
+    for i, name in enumerate("RGB"):
+        theirs = blocks(passes[..., i], side)
+        variance = theirs.var(0, ddof=1) / PASSES + blocks(ours[f"Error.{name}"] ** 2, side) / side**2
+        yield blocks(ours[name], side) - theirs.mean(0), variance
+
+
+def judge(ours, passes):
+    """What differs by how much, and whether the pictures agree."""
+    means = []
+    for i, name in enumerate("RGB"):
+        of_passes = passes[..., i].mean((1, 2))
+        error = np.hypot(of_passes.std(ddof=1) / np.sqrt(PASSES), np.sqrt((ours[f"Error.{name}"] ** 2).sum()) / ours[name].size)
+        means.append((float(ours[name].mean() - of_passes.mean()), float(error), float(of_passes.mean())))
+    close = all(abs(off) <= max(MOST_ERRORS * error, SMALL * abs(mean)) for off, error, mean in means)
+    z2 = {}
+    for side in MOST_SQUARES:
+        found = [(off[known] ** 2 / variance[known]).mean() for off, variance in differences(ours, passes, side) if (known := variance > 0).any()]
+        z2[side] = round(float(max(found, default=0)), 2)
+    square = [(off**2 - variance).mean() for off, variance in differences(ours, passes, 4)]
+    beyond = max(np.sqrt(max(square, 0)) / mean if mean else 0 for square, (_, _, mean) in zip(square, means))
+    agree = close and (all(z2[side] < most for side, most in MOST_SQUARES.items()) or beyond <= SMALL)
+    ratios = [round(1 + off / mean, 4) if mean else None for off, _, mean in means]
+    return {"agree": bool(agree), "means": ratios, "beyond": round(float(beyond), 4), "z2": z2}
+
+
+def compared(mi, scene, stem, args):
+    """What came of one scene; None if Mitsuba cannot load it."""
+    result = {}
+    ours = args.out / f"{stem}.exr"
+    for variant in VARIANTS:
+        mi.set_variant(variant)
+        try:
+            passes = by_mitsuba(mi, scene, args.width, args.spp)
+        except Exception as error:  # whatever Mitsuba throws
+            result[variant] = f"{error}".strip().splitlines()[-1][:200]
+            continue
+        np.save(args.out / f"{stem}-{variant}.npy", passes.astype(np.float32))
+        if "etalon" not in result:
+            size = f"{passes.shape[2]}x{passes.shape[1]}"
+            command = [args.etalon, "render", scene, "-o", ours, "--spp", str(args.spp), "--size", size, "--aov", "color,error"]
+            told = subprocess.run(command, capture_output=True, text=True, timeout=1800)
+            lines = [line.strip() for line in told.stderr.splitlines()]
+            result["etalon"] = [line for line in lines if "approximated" in line or "left out" in line]
+            if told.returncode != 0:
+                result["refused"] = lines[-12:]
+                break
+        result[variant] = judge(channels(ours)[0], passes)
+    return result if "etalon" in result else None
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", type=pathlib.Path)
+    parser.add_argument("words", nargs="*")
+    parser.add_argument("--etalon", type=pathlib.Path, default=HERE.parents[2] / "target/release/etalon")
+    parser.add_argument("--out", type=pathlib.Path, default=HERE.parents[2] / "out/published")
+    parser.add_argument("--width", type=int, default=96)
+    parser.add_argument("--spp", type=int, default=256)
+    args = parser.parse_args()
+
+    import mitsuba as mi
+
+    args.out.mkdir(parents=True, exist_ok=True)
+    kept = args.out / "results.json"
+    results = json.loads(kept.read_text()) if kept.exists() else {}
+    files = sorted(args.folder.rglob("*.xml"))
+    included = {name for file in files for name in INCLUDED.findall(file.read_text(errors="replace"))}
+    for scene in files:
+        name = str(scene.relative_to(args.folder))
+        if scene.name in included or (args.words and not any(word in name for word in args.words)):
+            continue
+        if name not in results:
+            results[name] = compared(mi, scene, name.replace("/", "-").removesuffix(".xml"), args)
+            kept.write_text(json.dumps(results, indent=1))
+        result = results[name]
+        if result is None:
+            print(f"{name}: not loaded by Mitsuba", flush=True)
+        elif "refused" in result:
+            print(f"{name}: REFUSED {' '.join(result['refused'])[:300]}", flush=True)
+        else:
+            print(f"{name}: {'agree' if agrees(result) else 'DIFFER'} {[result.get(v) for v in VARIANTS]} {result['etalon']}", flush=True)
+    loaded = [result for result in results.values() if result]
+    agree = sum(map(agrees, loaded))
+    print(f"{len(loaded)} scenes, {sum('refused' not in r for r in loaded)} load, {agree} agree ({100 * agree / max(len(loaded), 1):.0f} %)")
+
+
+def agrees(result):
+    return any(isinstance(result.get(variant), dict) and result[variant]["agree"] for variant in VARIANTS)
+
+
+if __name__ == "__main__":
+    main()
