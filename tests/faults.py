@@ -11,7 +11,8 @@ variable ETALON_FAULT selects one by its number. So a fault costs a run, not a b
     tests/faults.py table [FILE]          writes what has been judged as a table
 
 `run` goes on where it was interrupted: `target/faults/results.jsonl` has a line for each fault and judge. `--by verify` or `--by tests` asks
-one judge alone. A judge stops at the first truth or test that fails; `--all` names them all. `--tests` are the options of `cargo test`
+one judge alone. A judge stops at the first truth or test that fails; `--all` names them all. `verify` asks first for the truths that the key
+`truths` of a fault names by words, then for all. `--tests` are the options of `cargo test`
 that select tests. Number 0 is no fault: it is judged first, and must pass.
 """
 
@@ -155,9 +156,17 @@ def build(selection):
     return programs
 
 
-def judged_by_verify(environment, options):
-    """Names of truths that fail; one alone without --all."""
-    command = [str(BUILD / "release" / "etalon"), "verify", *options.truths]
+def judged_by_verify(environment, options, first=""):
+    """Names of truths that fail; one alone without --all. The truths whose names have a word of `first` are asked first."""
+    if first and not options.truths and not options.all:
+        if failed := failing_truths(environment, first.split(), False):
+            return failed
+    return failing_truths(environment, options.truths, options.all)
+
+
+def failing_truths(environment, words, ask_all):
+    """Names of the truths of these words that fail, or the name of the first."""
+    command = [str(BUILD / "release" / "etalon"), "verify", *words]
     failed = []
     with subprocess.Popen(
         command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
@@ -165,7 +174,7 @@ def judged_by_verify(environment, options):
         for line in process.stdout:
             if "  FAILED: " in line:
                 failed.append(line.split()[0])
-                if not options.all:
+                if not ask_all:
                     process.kill()
                     break
     # Ended by itself without a verdict: it crashed, and somebody notices.
@@ -227,7 +236,7 @@ def run(faults, options):
                 continue
             environment = {**os.environ, "ETALON_FAULT": str(fault["number"])}
             if judge == "verify":
-                failed = judged_by_verify(environment, options)
+                failed = judged_by_verify(environment, options, fault.get("truths", ""))
             else:
                 failed = judged_by_tests(environment, options, programs)
             if fault is none and failed:
