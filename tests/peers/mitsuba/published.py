@@ -5,7 +5,8 @@
     python3 tests/peers/mitsuba/published.py FOLDER [--etalon target/release/etalon] [--out OUT] [WORD ...]
 
 Each file .xml that no other includes is a scene; with words, only those whose path has one of them. Files that Mitsuba cannot load are left out.
-Pictures are small (`--width`). Mitsuba renders each scene in its spectral and in its RGB variant. Two pictures agree if for one of the variants
+Pictures are small (`--width`). Mitsuba renders each scene in its spectral and in its RGB variant, or, where
+something polarises, in its polarised one. Two pictures agree if for one of the variants
 
 - the mean of each channel differs by at most 4 standard errors or by at most 0.5 %, and
 - the mean of z² is below 1.6 over blocks of 4 × 4 pixels and below 2.2 over blocks of 8 × 8, or the difference beyond noise is at most 0.5 % of
@@ -26,19 +27,26 @@ from compare import MOST_ERRORS, SMALL, channels
 
 HERE = pathlib.Path(__file__).resolve().parent
 VARIANTS = ("llvm_ad_spectral", "llvm_ad_rgb")
+POLARISED = "llvm_ad_spectral_polarized"
+# Plugins that are nothing without polarisation.
+POLARISE = re.compile(r"""type=["'](polarizer|retarder|circular|stokes|measured_polarized)["']""")
 PASSES = 16
 INCLUDED = re.compile(r"""<include\s+filename=["'](?:[^"']*[/\\])?([^"'/\\]+)["']""")
+OPEN = re.compile(r"\$(\w+)")
+DEFAULTS = re.compile(r"""<default\s+name=["'](\w+)""")
 # Mean z² over blocks of so many pixels, at most.
 MOST_SQUARES = {4: 1.6, 8: 2.2}
 
 
-def by_mitsuba(mi, scene, width, spp):
-    """Renders of this width: passes × rows × columns × channels."""
-    loaded = mi.load_file(str(scene))
+def by_mitsuba(mi, scene, given, width, spp):
+    """Renders about as wide as this: passes × rows × columns × channels."""
+    loaded = mi.load_file(str(scene), **given)
     params = mi.traverse(loaded)
     key = next(key for key in params.keys() if key.endswith("film.size"))
     full = [int(side) for side in np.array(params[key])]
-    size = [width, max(1, round(width * full[1] / full[0]))]
+    # Of the widths around, that which keeps the shape of a picture best.
+    widths = range(width * 4 // 5, width * 6 // 5)
+    size = min(([w, max(1, round(w * full[1] / full[0]))] for w in widths), key=lambda s: (abs(s[1] * full[0] - s[0] * full[1]) / s[0], abs(s[0] - width)))
     params[key] = size
     if (crop := key.replace("film.size", "film.crop_size")) in params:
         params[crop] = size
@@ -87,20 +95,26 @@ def compared(mi, scene, stem, args):
     """What came of one scene; None if Mitsuba cannot load it."""
     result = {}
     ours = args.out / f"{stem}.exr"
-    for variant in VARIANTS:
+    text = scene.read_text(errors="replace")
+    is_polarised = POLARISE.search(text)
+    # Numbers that a scene leaves open are numbers of samples.
+    given = {name: "64" for name in set(OPEN.findall(text)) - set(DEFAULTS.findall(text))}
+    for variant in (POLARISED,) if is_polarised else VARIANTS:
         mi.set_variant(variant)
         try:
-            passes = by_mitsuba(mi, scene, args.width, args.spp)
+            passes = by_mitsuba(mi, scene, given, args.width, args.spp)
         except Exception as error:  # whatever Mitsuba throws
-            result[variant] = f"{error}".strip().splitlines()[-1][:200]
+            result[variant] = (str(error).strip().splitlines() or [type(error).__name__])[-1][:200]
             continue
         np.save(args.out / f"{stem}-{variant}.npy", passes.astype(np.float32))
         if "etalon" not in result:
             size = f"{passes.shape[2]}x{passes.shape[1]}"
             command = [args.etalon, "render", scene, "-o", ours, "--spp", str(args.spp), "--size", size, "--aov", "color,error"]
+            command += ["--polarised"] if is_polarised else []
+            command += [part for name, value in given.items() for part in ("-D", f"{name}={value}")]
             told = subprocess.run(command, capture_output=True, text=True, timeout=1800)
             lines = [line.strip() for line in told.stderr.splitlines()]
-            result["etalon"] = [line for line in lines if "approximated" in line or "left out" in line]
+            result["etalon"] = [line for line in lines if "⚠" in line]
             if told.returncode != 0:
                 result["refused"] = lines[-12:]
                 break
@@ -138,14 +152,15 @@ def main():
         elif "refused" in result:
             print(f"{name}: REFUSED {' '.join(result['refused'])[:300]}", flush=True)
         else:
-            print(f"{name}: {'agree' if agrees(result) else 'DIFFER'} {[result.get(v) for v in VARIANTS]} {result['etalon']}", flush=True)
+            found = {variant: of for variant, of in result.items() if variant != "etalon"}
+            print(f"{name}: {'agree' if agrees(result) else 'DIFFER'} {found} {result['etalon']}", flush=True)
     loaded = [result for result in results.values() if result]
     agree = sum(map(agrees, loaded))
     print(f"{len(loaded)} scenes, {sum('refused' not in r for r in loaded)} load, {agree} agree ({100 * agree / max(len(loaded), 1):.0f} %)")
 
 
 def agrees(result):
-    return any(isinstance(result.get(variant), dict) and result[variant]["agree"] for variant in VARIANTS)
+    return any(isinstance(of, dict) and of["agree"] for of in result.values())
 
 
 if __name__ == "__main__":
