@@ -84,7 +84,7 @@ pub(crate) fn blended(first: &Value, second: &Value, weight: f64) -> Option<Valu
 }
 
 /// Fills the interior of a body with a medium: that of glass, of the boundary of the medium, or of a filled body of another material. A body
-/// that lets no light in stays as it is; false of such a one. `has_holes` says whether an image is its opacity.
+/// that lets no light in stays as it is, and the answer is false. `has_holes` says whether an image is its opacity.
 pub(crate) fn fill(material: &mut Value, opacity: &mut f64, has_holes: bool, medium: &Value) -> bool {
     let lets_by = *opacity < 1.0 || has_holes;
     if material["type"] == "black" && *opacity == 0.0 {
