@@ -22,7 +22,7 @@ pub(super) fn truths() -> Vec<Truth> {
         .map(|truth| truth.claims(Claim::SpecularConnections))
         // Without light paths, few samples find the lamp.
         .chain([by_a_mirror("always", true)])
-        .chain([by_a_bent_mirror().claims(Claim::SpecularConnections)])
+        .chain([by_a_bent_mirror(), by_a_mirror_bent_beyond_the_sun()].map(|truth| truth.claims(Claim::SpecularConnections)))
         .collect()
 }
 
@@ -118,6 +118,63 @@ fn by_a_bent_mirror() -> Truth {
     })
     .or_else("shading normals ignored", 0.0)
     .or_else("power left as it arrives on the mirror", shown(arriving * sun[0] / to_floor[0]))
+    .sees(0.01)
+}
+
+/// The same, with a sun whose light meets the mirror at a smaller angle than its shading normals lean.
+fn by_a_mirror_bent_beyond_the_sun() -> Truth {
+    const REFLECTANCE: f64 = 0.9;
+    let (lean, grazing, irradiance) = (25.0_f64.to_radians(), 20.0_f64.to_radians(), 2.0);
+    // Elevations of the light that the floor sees.
+    let below = PI / 2.0 - 2.0 * lean;
+    let elevations = [below - grazing, below + grazing, PI / 2.0 - grazing];
+    let shown_of = |shares: [f64; 3]| {
+        let sines = elevations.iter().zip(shares).map(|(elevation, share)| share * elevation.sin());
+        shown(REFLECTANCE * irradiance * sines.sum::<f64>())
+    };
+    let normal = [lean.cos(), 0.0, lean.sin()];
+    let scene = floor("always")
+        .thing(json!({
+            "shape": {
+                "type": "mesh",
+                "vertices_m": [[-0.6, -0.3, 0.3], [-0.6, 0.3, 0.3], [-0.6, 0.3, 3.6], [-0.6, -0.3, 3.6]],
+                "triangles": [[0, 1, 2], [0, 2, 3]],
+                "normals": [normal, normal, normal, normal],
+            },
+            "material": mirror(REFLECTANCE),
+        }))
+        .object(parallelogram([0.5, -0.3, 0.6], [0.45, 0.0, 0.0], [0.0, 0.6, 0.0]), black())
+        .directional_light([-grazing.sin(), 0.0, -grazing.cos()], irradiance)
+        .spp(1024);
+    Truth::new(
+        "sun-by-a-mirror-bent-beyond-it-with-light-paths-always",
+        &scene,
+        shown_of([1.0; 3]),
+        "(ρ/π) R E Σ sin θ, θ of three elevations: 90° − 2ν − ε, 90° − 2ν + ε, 90° − ε, normals lean by ν, the sun is ε above the mirror",
+    )
+    .because(
+        "A mirror image about the shading normal that is behind the mirror is brought to the front, and so is an eye that is behind the shading \
+         normal. So the floor sees the sun in three directions, each with its whole solid angle.",
+    )
+    .confirmed("a search over the elevations in which the floor may look", 1e-3, move || {
+        // Angles from the mirror's own normal, upward.
+        let seen = |elevation: f64| {
+            let eye = if (lean + elevation).cos() > 0.0 { -elevation } else { PI + 2.0 * lean + elevation };
+            let image = 2.0 * lean - eye;
+            let front = if image.cos() > 0.0 { image } else { PI - image };
+            (front - (PI / 2.0 - grazing)).sin()
+        };
+        let steps = 100_003;
+        let at = |step: usize| step as f64 / steps as f64 * PI / 2.0;
+        let crossings = (1..steps).filter(|step| {
+            let [before, after] = [seen(at(step - 1)), seen(at(*step))];
+            before * after <= 0.0 && (before - after).abs() < 0.1
+        });
+        shown(REFLECTANCE * irradiance * crossings.map(|step| at(step).sin()).sum::<f64>())
+    })
+    .or_else("light from behind is lost", shown_of([1.0, 0.0, 0.0]))
+    .or_else("of two ways the one that is drawn counts once", shown_of([0.5, 0.25, 0.25]))
+    .or_else("an eye behind the shading normal sees nothing", shown_of([1.0, 1.0, 0.0]))
     .sees(0.01)
 }
 

@@ -11,7 +11,7 @@ use crate::integrator::reuse::ReusePath;
 use crate::integrator::tracer::Tracer;
 use crate::integrator::wavelength_lanes::WavelengthModel;
 use crate::polarisation::Polarisation;
-use crate::sampler::{Samplers, Wanted};
+use crate::sampler::{Samplers, Wanted, film_and_lens, wavelength_and_time};
 use crate::scene::world::World;
 use crate::wavelength::Wavelengths;
 use etalon_geometry::SurfaceId;
@@ -91,24 +91,26 @@ impl<'a, const N: usize> Starts<'a, N> {
         } else {
             camera_numbers(level, &self.samplers, 1, wanted, &mut numbers);
         }
+        let (of_wavelength, of_time) = wavelength_and_time(numbers);
         for lane in 0..self.count {
-            self.wavelengths[lane] = M::wavelengths(self.tracer.prepared, x[lane], y[lane], || numbers[0][lane]);
+            self.wavelengths[lane] = M::wavelengths(self.tracer.prepared, x[lane], y[lane], || of_wavelength[lane]);
         }
         if moves {
             // Blocks share wavelengths alone, and nothing that moves.
-            self.time = numbers[1];
+            self.time = of_time;
             counters.time_draws += self.count as u64;
         }
         let camera = &self.tracer.camera;
         let lens = camera.has_lens();
         camera_numbers(level, &self.samplers, 0, [true, true, lens, lens], &mut numbers);
         counters.lens_draws += self.count as u64 * u64::from(lens);
+        let (on_film, on_lens) = film_and_lens(numbers);
         let mut film = [Row::ZERO; 2];
         for lane in 0..self.count {
-            let [column, row] = self.tracer.film_point(x[lane], y[lane], [numbers[0][lane], numbers[1][lane]]);
+            let [column, row] = self.tracer.film_point(x[lane], y[lane], on_film.map(|u| u[lane]));
             (film[0].0[lane], film[1].0[lane]) = (column, row);
         }
-        let lens = [Row(numbers[2]), Row(numbers[3])];
+        let lens = on_lens.map(Row);
         if camera.is_compound() {
             for lane in 0..self.count {
                 let at = |rows: &[Row; 2]| [rows[0].0[lane], rows[1].0[lane]];

@@ -9,7 +9,7 @@ use crate::light::Light;
 use crate::media::MediumStack;
 use crate::plan::EffectName;
 use crate::polarisation::Polarisation;
-use crate::sampler::Sampler;
+use crate::sampler::{Sampler, film_and_lens, wavelength_and_time};
 use crate::scene::interaction::{SurfaceInteraction, Walk};
 use crate::scene::prepare::Prepared;
 use crate::scene::receiver::Departure;
@@ -142,11 +142,11 @@ impl<'a> Tracer<'a> {
         wavelength_nm: f64,
         counters: &mut Counters,
     ) -> Option<CameraRay> {
-        let [film_x, film_y, lens_1, lens_2] = sampler.set(0);
-        let film = self.film_point(x, y, [film_x, film_y]);
+        let (on_film, on_lens) = film_and_lens(sampler.set(0));
+        let film = self.film_point(x, y, on_film);
         counters.lens_draws += u64::from(self.camera.has_lens());
         let time = self.time(sampler, counters);
-        self.camera.ray_of(film, [lens_1, lens_2], time, wavelength_nm)
+        self.camera.ray_of(film, on_lens, time, wavelength_nm)
     }
 
     /// The first surface that the path of a sample meets, masks passed as the path passes them.
@@ -220,10 +220,8 @@ impl<'a> Tracer<'a> {
         counters: &mut Counters,
         observer: &mut impl Observer<N>,
     ) -> Path<'a, M, P, N> {
-        let wavelengths = M::wavelengths(self.prepared, x, y, || {
-            let [wavelength, ..] = self.of_block(x, y, sample).set(1);
-            wavelength
-        });
+        let drawn = || wavelength_and_time(self.of_block(x, y, sample).set(1)).0;
+        let wavelengths = M::wavelengths(self.prepared, x, y, drawn);
         let time = self.time(sampler, counters);
         let departure = self.prepared.receivers[x as usize].depart(sampler.set(0), time);
         let ray = departure.first_ray();
@@ -257,8 +255,7 @@ impl<'a> Tracer<'a> {
             return 0.0;
         }
         counters.time_draws += 1;
-        let [_, time, ..] = sampler.set(1);
-        time
+        wavelength_and_time(sampler.set(1)).1
     }
 
     /// Where the path of a sample begins, and whether the camera's lens lets it.
@@ -270,10 +267,8 @@ impl<'a> Tracer<'a> {
         sampler: &Sampler,
         counters: &mut Counters,
     ) -> (Start<'a, P, N>, bool) {
-        let wavelengths = M::wavelengths(self.prepared, x, y, || {
-            let [wavelength, ..] = self.of_block(x, y, sample).set(1);
-            wavelength
-        });
+        let drawn = || wavelength_and_time(self.of_block(x, y, sample).set(1)).0;
+        let wavelengths = M::wavelengths(self.prepared, x, y, drawn);
         let drawn = self.camera_ray(x, y, sampler, wavelengths.lambda_nm[0], counters);
         let Some(CameraRay { ray, weight, hero_only }) = drawn else {
             return (Start::blocked(wavelengths), false);
