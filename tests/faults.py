@@ -8,11 +8,12 @@ variable ETALON_FAULT selects one by its number. So a fault costs a run, not a b
     tests/faults.py check                 every fault applies, and the copy with all of them compiles
     tests/faults.py build                 builds `etalon` and the tests with all faults
     tests/faults.py run [NAME ...]        judges faults: by `etalon verify` alone, by the tests alone, and so by both
-    tests/faults.py table [FILE]          writes what has been judged as a table
+    tests/faults.py table [FILE]          writes what has been judged as a table, in a page after its mark
 
 `run` goes on where it was interrupted: `target/faults/results.jsonl` has a line for each fault and judge. `--by verify` or `--by tests` asks
 one judge alone. A judge stops at the first truth or test that fails; `--all` names them all. `verify` asks first for the truths that the key
-`truths` of a fault names by words, then for all. `--tests` are the options of `cargo test`
+`truths` of a fault names by words, then for all. With `--quick` it asks for the first alone, which takes some seconds a fault: what they notice is
+judged, and what they do not is left open. `--tests` are the options of `cargo test`
 that select tests. Number 0 is no fault: it is judged first, and must pass.
 """
 
@@ -32,6 +33,7 @@ COPY = WORK / "tree"
 BUILD = WORK / "build"
 RESULTS = WORK / "results.jsonl"
 OPEN, CLOSE = "«", "»"
+MARK = "<!-- written by tests/faults.py table -->\n\n"
 
 SWITCH = '''//! Which of the faults of `tests/faults` is switched on.
 
@@ -157,10 +159,12 @@ def build(selection):
 
 
 def judged_by_verify(environment, options, first=""):
-    """Names of truths that fail; one alone without --all. The truths whose names have a word of `first` are asked first."""
+    """Names of truths that fail; one alone without --all; None if that is left open. The truths whose names have a word of `first` are asked first."""
     if first and not options.truths and not options.all:
         if failed := failing_truths(environment, first.split(), False):
             return failed
+    if options.quick:
+        return None
     return failing_truths(environment, options.truths, options.all)
 
 
@@ -220,7 +224,7 @@ def results():
 
 def run(faults, options):
     copy(faults)
-    judges = ["verify", "tests"] if options.by == "both" else [options.by]
+    judges = ["verify"] if options.quick else ["verify", "tests"] if options.by == "both" else [options.by]
     programs = build(shlex.split(options.tests) if "tests" in judges else None)
     unknown = set(options.names) - {fault["name"] for fault in faults}
     if unknown:
@@ -230,7 +234,7 @@ def run(faults, options):
     head = subprocess.run(["git", "rev-parse", "HEAD"], cwd=TREE, capture_output=True, text=True).stdout
     asked = hashlib.sha256(f"{head} {options.truths} {options.tests}".encode()).hexdigest()[:16]
     none = {"name": "none", "digest": asked, "number": 0}
-    for fault in [none, *chosen]:
+    for fault in chosen if options.quick else [none, *chosen]:
         for judge in judges:
             if (fault["name"], fault["digest"], judge) in results():
                 continue
@@ -239,6 +243,9 @@ def run(faults, options):
                 failed = judged_by_verify(environment, options, fault.get("truths", ""))
             else:
                 failed = judged_by_tests(environment, options, programs)
+            if failed is None:
+                print(f"{fault['name']}: {judge} is open", flush=True)
+                continue
             if fault is none and failed:
                 sys.exit(f"without a fault, {judge} fails: {', '.join(failed)}")
             row = {"name": fault["name"], "digest": fault["digest"], "by": judge, "noticed": bool(failed), "failed": failed}
@@ -269,8 +276,10 @@ def table(faults, path):
     noticed = sum(row["verify"]["noticed"] or row["tests"]["noticed"] for row in both)
     text = "\n".join([*lines, "", f"{', '.join(counts)}, one or both {noticed} of {len(both)}.", ""])
     if path:
+        # What a page says before the table stays.
+        before, mark, _ = pathlib.Path(path).read_text().partition(MARK) if pathlib.Path(path).exists() else ("", "", "")
         temporary = pathlib.Path(f"{path}.part")
-        temporary.write_text(text)
+        temporary.write_text(f"{before}{mark}{text}")
         temporary.replace(path)
     else:
         print(text, end="")
@@ -283,6 +292,7 @@ def main():
     parser.add_argument("--by", choices=["verify", "tests", "both"], default="both")
     parser.add_argument("--tests", default="", metavar="OPTIONS", help="as cargo test takes them, such as '--lib --test integration'")
     parser.add_argument("--truths", nargs="*", default=[], metavar="WORD", help="words of the names of truths; all by default")
+    parser.add_argument("--quick", action="store_true", help="ask `verify` for the truths that faults name, and no more")
     parser.add_argument("--all", action="store_true", help="do not stop at the first truth or test that fails")
     parser.add_argument("--timeout", type=float, default=3600, metavar="SECONDS", help="for one program of tests")
     options = parser.parse_args()

@@ -43,6 +43,9 @@ impl<'a> Walk<'a, '_, '_> {
         // −1 is without limit.
         if let Some(depth) = element.number("max_depth")?.filter(|depth| *depth >= 1.0) {
             self.builder.integrator.insert("max_depth".to_owned(), json!(depth.min(f64::from(u32::MAX)) as u32));
+            if plugin.contains("vol") {
+                self.limit_without_panes = Some(element.place.clone());
+            }
         }
         if let Some(from) = element.number("rr_depth")?
             && self.builder.integrator.get("max_depth").and_then(serde_json::Value::as_f64).is_some_and(|d| from > d)

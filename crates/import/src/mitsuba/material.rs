@@ -192,6 +192,7 @@ impl Walk<'_, '_, '_> {
             }
             "thindielectric" => {
                 let ratio = self.index(element, "int_ior", 1.5046)? / self.index(element, "ext_ior", 1.000_277)?;
+                self.has_panes = true;
                 let mut pane = json!({ "type": "thin-dielectric", "index": ratio });
                 self.put_tints(element, &mut pane)?;
                 pane

@@ -44,6 +44,8 @@ pub(super) fn import(bytes: &[u8], parameters: &[(String, String)], builder: &mu
         meshes: HashMap::new(),
         measured: HashMap::new(),
         choices: Choices::default(),
+        has_panes: false,
+        limit_without_panes: None,
         open: Vec::new(),
         entered: 0,
     };
@@ -64,6 +66,10 @@ struct Walk<'a, 'w, 'b> {
     measured: HashMap<String, serde_json::Value>,
     /// What has been chosen of the material that is being read.
     choices: Choices,
+    /// Whether a pane of glass without thickness was read.
+    has_panes: bool,
+    /// Where a limit on depth stands that does not count what goes through those.
+    limit_without_panes: Option<String>,
     /// The elements that are being read, each within the one before.
     open: Vec<*const Element>,
     /// How many elements have been entered, each as often as it is.
@@ -116,6 +122,11 @@ impl<'a> Walk<'a, '_, '_> {
             if matches!(child.tag.as_str(), "bsdf" | "texture" | "spectrum" | "rgb") {
                 child.mark();
             }
+        }
+        if let Some(place) = self.limit_without_panes.take().filter(|_| self.has_panes) {
+            let what = "this integrator does not count the way through a thindielectric as an edge of the path. Here it counts, so what is \
+                        behind one is darker: a larger max_depth leaves that out";
+            self.builder.approximate(&place, what);
         }
         root.list_unused(self.builder);
         Ok(())

@@ -96,6 +96,25 @@ fn bodies_that_are_neither_glass_nor_null_hold_their_media() {
     assert!(said(&imported).iter().any(|what| what.contains("medium of a polarising sheet")), "{:?}", said(&imported));
 }
 
+/// The program's integrators for media count no edge where light goes straight through a pane, but for a limit that is never reached.
+#[test]
+fn a_limit_on_depth_that_does_not_count_panes_is_told() {
+    for (integrator, depth, bsdf, is_told) in [
+        ("volpath", "6", "thindielectric", true),
+        ("volpathmis", "6", "thindielectric", true),
+        ("path", "6", "thindielectric", false),
+        ("volpath", "-1", "thindielectric", false),
+        ("volpath", "6", "dielectric", false),
+    ] {
+        let text = format!(
+            r#"<scene version="3.0.0"><integrator type="{integrator}"><integer name="max_depth" value="{depth}"/></integrator>
+<sensor type="perspective"/><shape type="sphere"><bsdf type="{bsdf}"/></shape></scene>"#
+        );
+        let told = said(&imported("xml", &text));
+        assert_eq!(told.iter().any(|what| what.contains("max_depth")), is_told, "{integrator} {depth} {bsdf}: {told:?}");
+    }
+}
+
 /// A heterogeneous medium ends where its volume does, which is the box from 0 to 1, even if it is the same everywhere in it.
 #[test]
 fn a_volume_that_is_the_same_everywhere_ends_at_its_box() {

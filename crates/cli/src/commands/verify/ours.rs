@@ -21,17 +21,18 @@ const REPLICATES: u32 = 64;
 /// At first, all replicates together take this part of the samples that the truth's scene suggests: those are meant for independent
 /// numbers.
 const FIRST: u32 = 4;
-/// A reading too noisy to count takes this many times the paths.
+/// A reading too noisy to count takes this many times the paths, and again, up to so many times those of the first step.
+const MORE_TO_COUNT: u32 = 2;
+const MOST_TO_COUNT: u32 = 1 << 8;
+/// What is to see more than that takes this many times the paths.
 const MORE: u32 = 4;
-/// It does so at most this many times.
-const STEPS: u32 = 4;
 /// What a thorough run wants to see of each truth, relative, and of those whose whole name was given. How many rays it spends on that for
 /// every truth, and how many where as many will do. In rays, not in seconds, so that what is read is the same on every machine.
 const THOROUGH_SEES: f64 = 2e-3;
 const THOROUGH_SEES_BY_NAME: f64 = 2e-4;
 const THOROUGH_RAYS: u64 = 32_000_000;
 const THOROUGH_REACH_RAYS: u64 = 4_096_000_000;
-/// Rays of a run of all truths: about three minutes of two cores. What the truths do not need for their mistakes goes to those that see the
+/// Rays of a run of all truths. What the truths do not need for their mistakes goes to those that see the
 /// least.
 const RAYS_OF_ALL: u64 = 400_000_000;
 
@@ -235,20 +236,21 @@ fn measured(
 ) -> Result<(Reading, u32), Stop> {
     let truth = measurement.truth;
     let wanted = thorough_sees(&args.names, truth) * truth.value().abs();
-    let (mut step, mut seen_before) = (0, f64::INFINITY);
+    let (mut effort, mut seen_before) = (1, f64::INFINITY);
     loop {
-        let reading = measurement.render_to(MORE.pow(step), significance, interrupt)?;
+        let reading = measurement.render_to(effort, significance, interrupt)?;
         if reading.cut_bias.is_infinite() {
             // No number of paths bounds it.
-            break Ok((reading, MORE.pow(step)));
+            break Ok((reading, effort));
         }
         let seen = judge(truth, &reading, significance).resolvable_bias;
-        let enough = seen <= truth.must_resolve() || step >= STEPS;
+        let enough = seen <= truth.must_resolve() || effort >= MOST_TO_COUNT;
         let thorough = || is_worth_more(measurement.rays(), seen_before, seen, wanted);
         if enough && !(args.thorough && thorough()) {
-            break Ok((reading, MORE.pow(step)));
+            break Ok((reading, effort));
         }
-        (step, seen_before) = (step + 1, seen);
+        effort = effort.saturating_mul(if enough { MORE } else { MORE_TO_COUNT });
+        seen_before = seen;
     }
 }
 

@@ -2,17 +2,15 @@
 
 use super::refracted_shadow::{MOST_INTERFACES, pass_alike};
 use super::solve::Root;
+use super::walker::{LobeChoice, Scout, Walker};
 use crate::film::Counters;
 use crate::integrator::vertex::Vertex;
 use crate::integrator::wavelength_lanes::WavelengthModel;
 use crate::integrator::{Direction, MOST_VERTICES, Path};
 use crate::light::Light;
 use crate::media::{MediumStack, Way};
-use crate::mis::Density;
 use crate::polarisation::Polarisation;
 use crate::sampler::NumberStream;
-use crate::scene::interaction::SurfaceInteraction;
-use crate::scene::shading_tables::BsdfKind;
 use crate::scene::world::World;
 use crate::spectral::Colour;
 use etalon_geometry::{Ray, SurfaceId};
@@ -22,9 +20,6 @@ use etalon_optics::{Lanes, Vec3};
 const SURE_VERTICES: u32 = 8;
 const GOES_ON: f64 = 0.5;
 
-/// The share of the chains that are reflected where some light is, and some passes.
-const REFLECTS: f64 = 0.2;
-
 /// A chain of mirrors and smooth interfaces that begins at a vertex of a path.
 pub(super) struct Chain<'c, 'a, V, M, P, const N: usize> {
     world: &'c World<'a>,
@@ -32,14 +27,13 @@ pub(super) struct Chain<'c, 'a, V, M, P, const N: usize> {
     vertex: &'c V,
     /// The path, which is there.
     path: &'c Path<'a, M, P, N>,
-    /// Walks along the chain.
-    walker: Path<'a, M, P, N>,
-    /// The numbers by which its vertices choose among their lobes.
-    numbers: NumberStream,
+    /// Finds where chains lead.
+    scout: Scout<'a>,
+    /// Finds what comes along a chain.
+    walker: Walker<'a, M, P, N>,
+    choice: LobeChoice,
     /// Vertices that it may have.
     most: u32,
-    /// Whether it is refracted wherever it can be, whatever the numbers say.
-    refracts: bool,
 }
 
 /// What a lamp of unit spectrum sends along a chain to the camera.
@@ -64,16 +58,6 @@ pub(super) struct ShadowPassed<const N: usize> {
     pub interfaces: u32,
     /// The probability with which the walk would have passed them.
     pub probability: f64,
-}
-
-/// A mirror or smooth interface that the walk has come to, before it goes on.
-struct ChainVertex<'a, const N: usize> {
-    vertex: SurfaceInteraction<'a>,
-    /// What media have let through up to there, times the probability of its lobe over that with which it was chosen.
-    weight: Lanes<f64, N>,
-    /// Where it goes on, and the number that chose among its lobes.
-    direction: Direction<N>,
-    u_lobe: f64,
 }
 
 /// A vertex of a chain, and how it goes on from there.
@@ -109,24 +93,22 @@ impl<'c, 'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: 
     }
 
     fn of(path: &'c Path<'a, M, P, N>, world: &'c World<'a>, vertex: &'c V, numbers: NumberStream, most: u32) -> Self {
-        let mut walker = Path::idle();
-        walker.wavelengths = path.wavelengths;
-        walker.vertex = path.vertex;
-        walker.spectra = path.spectra.clone();
         // Edges of the path: to this vertex, to each of the chain, and to the lamp.
         let most = most.min(world.max_depth.saturating_sub(path.vertex + 2));
-        Self { world, vertex, path, walker, numbers, most, refracts: false }
+        let choice = LobeChoice { numbers, refracts: false };
+        let walker = Walker::like(path);
+        Self { world, vertex, path, scout: Scout::of(path), walker, choice, most }
     }
 
     /// Follows the chain that begins in a direction. `each` hears of its vertices, and says whether to go on.
     pub(super) fn follow(&mut self, wi: Vec3<f64>, counters: &mut Counters, mut each: impl FnMut(&Link) -> bool) {
-        let mut ray = self.begin(wi);
+        self.scout.begin(self.world, self.media_toward(wi));
+        let mut ray = self.vertex.point().spawn(wi);
         for number in 0..self.most {
-            let Some(ChainVertex { vertex, direction, u_lobe, .. }) = self.next(&ray, number, counters) else { return };
-            ray = self.go_on(&vertex, direction, u_lobe);
-            let link =
-                Link { surface: vertex.point.surface, position: vertex.point.position, direction: ray.direction };
-            if !each(&link) {
+            let Some(next) = self.scout.next(self.world, &self.choice, &ray, number, counters) else { return };
+            let (surface, position) = (next.vertex.point.surface, next.vertex.point.position);
+            ray = self.scout.go_on(self.world, next);
+            if !each(&Link { surface, position, direction: ray.direction }) {
                 return;
             }
         }
@@ -134,68 +116,70 @@ impl<'c, 'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: 
 
     /// The last vertex of the chain that a ray of a lamp follows, and how many it has.
     pub(super) fn of_lamp(&mut self, ray: &Ray<f64>, counters: &mut Counters) -> Option<(Vec3<f64>, u32)> {
-        let mut ray = Ray { time: self.vertex.point().time, ..*ray };
-        self.begin(ray.direction);
-        self.walker.stack = self.world.media_around(&ray, counters).unwrap_or(MediumStack::NOTHING);
+        let mut ray = self.begin_at_lamp(ray, counters);
         let mut last = None;
         for count in 1..=self.most {
             // Mostly there are two, which the chain meets in the other order.
             let number = if count <= 2 { 2 - count } else { count - 1 };
-            let Some(ChainVertex { vertex, direction, u_lobe, .. }) = self.next(&ray, number, counters) else { break };
-            last = Some((vertex.point.position, count));
-            ray = self.go_on(&vertex, direction, u_lobe);
+            let Some(next) = self.scout.next(self.world, &self.choice, &ray, number, counters) else { break };
+            last = Some((next.vertex.point.position, count));
+            ray = self.scout.go_on(self.world, next);
         }
         last
     }
 
     /// The ray on which a ray of a lamp leaves the last mirror or interface that it meets, refracted wherever it can be; `None` if it meets none.
     pub(super) fn passed(&mut self, ray: &Ray<f64>, counters: &mut Counters) -> Option<Ray<f64>> {
-        let mut ray = Ray { time: self.vertex.point().time, ..*ray };
-        self.begin(ray.direction);
-        self.walker.stack = self.world.media_around(&ray, counters).unwrap_or(MediumStack::NOTHING);
-        self.refracts = true;
+        let mut ray = self.begin_at_lamp(ray, counters);
+        let choice = LobeChoice { refracts: true, ..self.choice };
         let mut passed = None;
         for number in 0..self.most {
-            let Some(ChainVertex { vertex, direction, u_lobe, .. }) = self.next(&ray, number, counters) else { break };
-            ray = self.go_on(&vertex, direction, u_lobe);
+            let Some(next) = self.scout.next(self.world, &choice, &ray, number, counters) else { break };
+            ray = self.scout.go_on(self.world, next);
             passed = Some(ray);
         }
-        self.refracts = false;
         passed
+    }
+
+    /// The scout at the beginning of a ray of a lamp.
+    fn begin_at_lamp(&mut self, ray: &Ray<f64>, counters: &mut Counters) -> Ray<f64> {
+        let ray = Ray { time: self.vertex.point().time, ..*ray };
+        let stack = self.world.media_around(&ray, counters).unwrap_or(MediumStack::NOTHING);
+        self.scout.begin(self.world, Some(stack));
+        ray
     }
 
     /// What comes along a root's chain; `None` if nothing comes through.
     pub(super) fn bring(&mut self, root: &Root, light: &Light, counters: &mut Counters) -> Option<Brought<N>> {
-        let (f_cos, _) = self.vertex.eval(&mut self.walker, self.world, root.wi);
+        let (f_cos, _) = self.vertex.eval(&mut self.walker.path, self.world, root.wi);
         if f_cos.is_zero() {
             return None;
         }
         let mut ray = self.begin(root.wi);
-        let lambda_nm = self.walker.wavelengths.lambda_nm;
-        self.walker.beta *= f_cos;
-        let wo = self.vertex.wo();
-        self.walker.polarisation.follow(wo, root.wi, || self.vertex.mueller(&lambda_nm, root.wi));
+        self.walker.path.beta *= f_cos;
         let mut walked = 0.0;
         for number in 0..self.most {
-            let ChainVertex { vertex, weight, direction, u_lobe } = self.next(&ray, number, counters)?;
-            self.walker.beta *= weight;
-            walked += (vertex.point.position - ray.origin).length();
+            let next = self.walker.next(self.world, &self.choice, &ray, number, counters)?;
+            let walker = &mut self.walker.path;
+            walker.beta *= next.weight;
+            let from = next.vertex.point.position;
+            walked += (from - ray.origin).length();
             if number + 1 < root.vertices {
-                ray = self.go_on(&vertex, direction, u_lobe);
+                ray = self.walker.go_on(self.world, next);
                 continue;
             }
-            let sample = light.sample(vertex.point.position, [0.0; 2], vertex.point.time)?;
-            let visible = self.walker.visibility(self.world, &vertex, &sample, counters)?;
-            self.go_on(&vertex, direction, u_lobe);
+            let sample = light.sample(from, [0.0; 2], next.vertex.point.time)?;
+            let visible = walker.visibility(self.world, &next.vertex, &sample, counters)?;
+            self.walker.go_on(self.world, next);
             // A chain may be as long with this probability.
             let continued = GOES_ON.powi(root.vertices.saturating_sub(SURE_VERTICES) as i32);
             let scale = sample.scale * visible.share / (root.determinant.abs() * continued);
-            let walker = &self.walker;
+            let walker = &self.walker.path;
             let light = walker.beta * visible.transmittance.unwrap_or(Lanes::ONE) * (walker.lanes.weight() * scale);
             if light.is_zero() {
                 return None;
             }
-            let distance = sample.target.distance(vertex.point.position);
+            let distance = sample.target.distance(from);
             let spread = if distance.is_finite() { (walked + distance) / distance } else { 1.0 };
             let of_chain = walker.beta.max_lane() / (self.path.beta * f_cos).max_lane();
             let [s0, others @ ..] = walker.polarisation.of_unpolarised();
@@ -219,12 +203,10 @@ impl<'c, 'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: 
         counters: &mut Counters,
     ) -> Option<ShadowPassed<N>> {
         let mut ray = self.begin(wi);
-        let (wo, lambda_nm) = (self.vertex.wo(), self.walker.wavelengths.lambda_nm);
-        self.walker.polarisation.follow(wo, wi, || self.vertex.mueller(&lambda_nm, wi));
         let (mut start, mut interfaces, mut probability) = (ray.origin, 0, 1.0);
         let mut left = Lanes::ONE;
         for _ in 0..MOST_VERTICES {
-            let Self { world, walker, .. } = self;
+            let Self { world, walker: Walker { path: walker, .. }, .. } = self;
             counters.rays += 1;
             let met = world.intersect(&ray, &mut walker.walk, &mut walker.stack, counters);
             if world.participating.is_some() {
@@ -277,11 +259,12 @@ impl<'c, 'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: 
             {
                 return None;
             }
-            let next = self.go_on(&met, direction, u_lobe);
-            if !met.goes_through(next.direction) {
+            let taken = walker.scatter(world, &met, direction, u_lobe);
+            if !met.goes_through(taken.wi) {
                 return None;
             }
-            self.walker.beta *= transmitted;
+            let next = met.point.spawn(taken.wi);
+            walker.beta *= transmitted;
             probability *= transmitted;
             interfaces += 1;
             (ray, start) = (next, next.origin);
@@ -290,7 +273,7 @@ impl<'c, 'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: 
     }
 
     fn came_through(&self, radiance: Lanes<f64, N>, interfaces: u32, probability: f64) -> ShadowPassed<N> {
-        let walker = &self.walker;
+        let walker = &self.walker.path;
         let light = walker.beta * radiance * walker.lanes.weight();
         let [s0, others @ ..] = walker.polarisation.of_unpolarised();
         ShadowPassed {
@@ -301,77 +284,18 @@ impl<'c, 'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: 
         }
     }
 
-    /// The walker back at the beginning, and the ray in a direction.
+    /// The walker at the beginning, with what the path has there and what the vertex does to polarisation, and the ray in a direction.
     fn begin(&mut self, wi: Vec3<f64>) -> Ray<f64> {
-        let (walker, path) = (&mut self.walker, self.path);
+        let stack = self.media_toward(wi);
+        self.walker.begin(self.world, stack);
+        let (walker, path, vertex) = (&mut self.walker.path, self.path, self.vertex);
         (walker.beta, walker.lanes, walker.polarisation) = (path.beta, path.lanes, path.polarisation);
-        walker.leave_ray(self.world);
-        if self.world.follows_media() {
-            // The path knows what is behind the surface that it has met.
-            walker.stack = self.vertex.media_toward(path, wi);
-        }
-        self.vertex.point().spawn(wi)
+        walker.polarisation.follow(vertex.wo(), wi, || vertex.mueller(&path.wavelengths.lambda_nm, wi));
+        vertex.point().spawn(wi)
     }
 
-    /// The mirror or smooth interface that the ray meets next; `None` if it meets none.
-    fn next(&mut self, ray: &Ray<f64>, number: u32, counters: &mut Counters) -> Option<ChainVertex<'a, N>> {
-        let Self { world, walker, refracts, .. } = self;
-        let [mut u_lobe, u1, u2, mut u_mask] = self.numbers.set(u64::from(number));
-        if *refracts {
-            u_lobe = 1.0_f64.next_down();
-        }
-        let (mut weight, mut start) = (Lanes::ONE, ray.origin);
-        for _ in 0..MOST_VERTICES {
-            counters.rays += 1;
-            let mut met = world.intersect(ray, &mut walker.walk, &mut walker.stack, counters)?;
-            if world.participating.is_some() {
-                walker.stack.meet(met.surface.interior(), met.meets_front());
-                let way =
-                    Way { origin: start, direction: ray.direction, length: (met.point.position - start).length() };
-                weight *= walker.transmittance(world, &walker.stack, &way);
-            }
-            if world.masks {
-                let opacity = met.opacity(world);
-                if u_mask >= opacity {
-                    u_mask = (u_mask - opacity) / (1.0 - opacity);
-                    start = met.point.position;
-                    walker.walk.pass(&met, &mut walker.stack);
-                    continue;
-                }
-            }
-            met.prepare_scattering(world);
-            if let Some(reflectance) = walker.reflection_probability(world, &met) {
-                // The same choice from wherever the chain comes, so that Newton's method finds its root from afar: the first lobe or the last.
-                let (reflects, probability) = match reflectance < 1.0 {
-                    true if u_lobe < REFLECTS => (true, reflectance / REFLECTS),
-                    true => (false, (1.0 - reflectance) / (1.0 - REFLECTS)),
-                    false => (true, 1.0),
-                };
-                u_lobe = if reflects { 0.0 } else { 1.0_f64.next_down() };
-                weight *= probability;
-            }
-            let direction = match met.kind {
-                BsdfKind::Lambert(_) => return None,
-                BsdfKind::Mirror(_) | BsdfKind::Dielectric(_) => {
-                    walker.sample_direction(world, &met, [u_lobe, u1, u2], &mut ())?
-                }
-                BsdfKind::General => {
-                    let lambda_nm = &walker.wavelengths.lambda_nm;
-                    let sample = met.scattering().sample(lambda_nm, met.wo, [u_lobe, u1, u2])?;
-                    if sample.density != Density::Delta {
-                        return None;
-                    }
-                    Direction::General { sample, guiding: 1.0 }
-                }
-            };
-            return Some(ChainVertex { vertex: met, weight, direction, u_lobe });
-        }
-        None
-    }
-
-    /// Takes the step from a vertex of the chain.
-    fn go_on(&mut self, vertex: &SurfaceInteraction<'a>, direction: Direction<N>, u_lobe: f64) -> Ray<f64> {
-        let taken = self.walker.scatter(self.world, vertex, direction, u_lobe);
-        vertex.point.spawn(taken.wi)
+    /// The media behind the vertex in a direction, where media are followed. The path knows what is behind the surface that it has met.
+    fn media_toward(&self, wi: Vec3<f64>) -> Option<MediumStack<'a>> {
+        self.world.follows_media().then(|| self.vertex.media_toward(self.path, wi))
     }
 }

@@ -22,6 +22,7 @@ mod chain;
 mod passed_beam;
 mod refracted_shadow;
 mod solve;
+mod walker;
 
 use super::Path;
 use super::vertex::Vertex;

@@ -1,0 +1,147 @@
+//! Steps along a chain of mirrors and smooth interfaces.
+
+use crate::film::Counters;
+use crate::integrator::wavelength_lanes::{OneLane, WavelengthModel};
+use crate::integrator::{Direction, MOST_VERTICES, Path};
+use crate::media::{MediumStack, Way};
+use crate::mis::Density;
+use crate::polarisation::{Averaged, Polarisation};
+use crate::sampler::NumberStream;
+use crate::scene::interaction::SurfaceInteraction;
+use crate::scene::shading_tables::BsdfKind;
+use crate::scene::world::World;
+use crate::wavelength::Wavelengths;
+use etalon_geometry::Ray;
+use etalon_optics::Lanes;
+
+/// The share of the chains that are reflected where some light is, and some passes.
+const REFLECTS: f64 = 0.2;
+
+/// Walks along chains.
+pub(super) struct Walker<'a, M, P, const N: usize> {
+    pub path: Path<'a, M, P, N>,
+    /// Whether it asks what media let through. Where chains lead does not depend on that.
+    asks_media: bool,
+}
+
+/// Finds where chains lead: with the hero alone, which decides that, and without polarisation.
+pub(super) type Scout<'a> = Walker<'a, OneLane, Averaged, 1>;
+
+/// A mirror or smooth interface that a walker has come to, before it goes on.
+pub(super) struct ChainVertex<'a, const N: usize> {
+    pub vertex: SurfaceInteraction<'a>,
+    /// What media have let through up to there, times the probability of its lobe over that with which it was chosen.
+    pub weight: Lanes<f64, N>,
+    /// Where it goes on, and the number that chose among its lobes.
+    direction: Direction<N>,
+    u_lobe: f64,
+}
+
+/// How the vertices of a chain choose among their lobes.
+#[derive(Clone, Copy)]
+pub(super) struct LobeChoice {
+    pub numbers: NumberStream,
+    /// Whether it is refracted wherever it can be, whatever the numbers say.
+    pub refracts: bool,
+}
+
+impl<'a> Scout<'a> {
+    /// That of chains which begin at a vertex of a path.
+    pub(super) fn of<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(path: &Path<'a, M, P, N>) -> Self {
+        let mut scout = Path::idle();
+        scout.wavelengths = Wavelengths::fixed([path.hero_nm()]);
+        scout.vertex = path.vertex;
+        scout.spectra.forget(&scout.wavelengths.lambda_nm, false);
+        Self { path: scout, asks_media: false }
+    }
+}
+
+impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Walker<'a, M, P, N> {
+    /// One at the wavelengths of a path, and at its vertex.
+    pub(super) fn like(path: &Path<'a, M, P, N>) -> Self {
+        let mut walker = Path::idle();
+        walker.wavelengths = path.wavelengths;
+        walker.vertex = path.vertex;
+        walker.spectra = path.spectra.clone();
+        Self { path: walker, asks_media: true }
+    }
+
+    /// Back at the beginning of the chain, in these media if they are followed.
+    pub(super) fn begin(&mut self, world: &World<'a>, stack: Option<MediumStack<'a>>) {
+        self.path.leave_ray(world);
+        if let Some(stack) = stack {
+            self.path.stack = stack;
+        }
+    }
+
+    /// The mirror or smooth interface that the ray meets next; `None` if it meets none.
+    pub(super) fn next(
+        &mut self,
+        world: &World<'a>,
+        choice: &LobeChoice,
+        ray: &Ray<f64>,
+        number: u32,
+        counters: &mut Counters,
+    ) -> Option<ChainVertex<'a, N>> {
+        let Self { path: walker, asks_media } = self;
+        let [mut u_lobe, u1, u2, mut u_mask] = choice.numbers.set(u64::from(number));
+        if choice.refracts {
+            u_lobe = 1.0_f64.next_down();
+        }
+        let (mut weight, mut start) = (Lanes::ONE, ray.origin);
+        for _ in 0..MOST_VERTICES {
+            counters.rays += 1;
+            let mut met = world.intersect(ray, &mut walker.walk, &mut walker.stack, counters)?;
+            if world.participating.is_some() {
+                walker.stack.meet(met.surface.interior(), met.meets_front());
+                if *asks_media {
+                    let length = (met.point.position - start).length();
+                    let way = Way { origin: start, direction: ray.direction, length };
+                    weight *= walker.transmittance(world, &walker.stack, &way);
+                }
+            }
+            if world.masks {
+                let opacity = met.opacity(world);
+                if u_mask >= opacity {
+                    u_mask = (u_mask - opacity) / (1.0 - opacity);
+                    start = met.point.position;
+                    walker.walk.pass(&met, &mut walker.stack);
+                    continue;
+                }
+            }
+            met.prepare_scattering(world);
+            if let Some(reflectance) = walker.reflection_probability(world, &met) {
+                // The same choice from wherever the chain comes, so that Newton's method finds its root from afar: the first lobe or the last.
+                let (reflects, probability) = match reflectance < 1.0 {
+                    true if u_lobe < REFLECTS => (true, reflectance / REFLECTS),
+                    true => (false, (1.0 - reflectance) / (1.0 - REFLECTS)),
+                    false => (true, 1.0),
+                };
+                u_lobe = if reflects { 0.0 } else { 1.0_f64.next_down() };
+                weight *= probability;
+            }
+            let direction = match met.kind {
+                BsdfKind::Lambert(_) => return None,
+                BsdfKind::Mirror(_) | BsdfKind::Dielectric(_) => {
+                    walker.sample_direction(world, &met, [u_lobe, u1, u2], &mut ())?
+                }
+                BsdfKind::General => {
+                    let lambda_nm = &walker.wavelengths.lambda_nm;
+                    let sample = met.scattering().sample(lambda_nm, met.wo, [u_lobe, u1, u2])?;
+                    if sample.density != Density::Delta {
+                        return None;
+                    }
+                    Direction::General { sample, guiding: 1.0 }
+                }
+            };
+            return Some(ChainVertex { vertex: met, weight, direction, u_lobe });
+        }
+        None
+    }
+
+    /// Takes the step from a vertex of the chain.
+    pub(super) fn go_on(&mut self, world: &World<'a>, from: ChainVertex<'a, N>) -> Ray<f64> {
+        let taken = self.path.scatter(world, &from.vertex, from.direction, from.u_lobe);
+        from.vertex.point.spawn(taken.wi)
+    }
+}
