@@ -111,7 +111,11 @@ fn a_limit_on_depth_that_does_not_count_panes_is_told() {
 <sensor type="perspective"/><shape type="sphere"><bsdf type="{bsdf}"/></shape></scene>"#
         );
         let told = said(&imported("xml", &text));
-        assert_eq!(told.iter().any(|what| what.contains("max_depth")), is_told, "{integrator} {depth} {bsdf}: {told:?}");
+        assert_eq!(
+            told.iter().any(|what| what.contains("max_depth")),
+            is_told,
+            "{integrator} {depth} {bsdf}: {told:?}"
+        );
     }
 }
 

@@ -22,7 +22,10 @@ pub(super) fn truths() -> Vec<Truth> {
         .map(|truth| truth.claims(Claim::SpecularConnections))
         // Without light paths, few samples find the lamp.
         .chain([by_a_mirror("always", true)])
-        .chain([by_a_bent_mirror(), by_a_mirror_bent_beyond_the_sun()].map(|truth| truth.claims(Claim::SpecularConnections)))
+        .chain(
+            [by_a_bent_mirror(), by_a_mirror_bent_beyond_the_sun()]
+                .map(|truth| truth.claims(Claim::SpecularConnections)),
+        )
         .collect()
 }
 
