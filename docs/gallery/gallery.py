@@ -58,7 +58,7 @@ PICTURES = [
     Picture("wax", "scenes/wax.json", ["--exposure", "1", "--curve", "agx"],
             "Candles of wax and a block of soap with a warm lamp behind it. Look at the thin parts: light that goes through them comes out warm, since "
             "long waves are absorbed less. All of it is scattering inside a rough interface.", size="480x360"),
-    Picture("cloud", "scenes/cloud.json", ["--exposure", "-1", "--curve", "agx"],
+    Picture("cloud", "scenes/cloud.json", ["--exposure", "0", "--curve", "agx"],
             "A cloud of drops in the afternoon sun. Light is scattered a hundred times in it: look at the rim toward the sun, at the dark base, and at "
             "the blue of the sky in the shadows.", size="480x300"),
     Picture("milk", "scenes/milk.json", ["--exposure", "0.5"],
@@ -96,7 +96,7 @@ On 29 November 2026 these pictures were laid beside the 33 scenes and seven bann
 - Their interiors are richer: kitchens, bathrooms and staircases by artists, where ours is one room of boxes and books. Their gallery has hair, fur and cars. Etalon
   does not render hair.
 - Theirs has no soap film, no grating, no crossed polarisers, no fluorescent paint and no spectrum. These pictures are what Etalon is for.
-- The coatings, the titanium rods and the black light look like plates of a textbook. The bubble, the black light and the prism in smoke are still noisy.
+- The coatings, the titanium rods and the black light look like plates of a textbook. The bubble, the black light, the prism in smoke, the cloud and the wax are still noisy.
 - No picture there states its error or its time.
 """
 
