@@ -25,6 +25,7 @@ import pathlib
 import shlex
 import subprocess
 import sys
+import threading
 import tomllib
 
 TREE = pathlib.Path(__file__).resolve().parent.parent
@@ -33,6 +34,8 @@ COPY = WORK / "tree"
 BUILD = WORK / "build"
 RESULTS = WORK / "results.jsonl"
 OPEN, CLOSE = "«", "»"
+# What a run with --quick gives the truths of a fault.
+QUICK_S = 120
 MARK = "<!-- written by tests/faults.py table -->\n\n"
 
 SWITCH = '''//! Which of the faults of `tests/faults` is switched on.
@@ -161,28 +164,36 @@ def build(selection):
 def judged_by_verify(environment, options, first=""):
     """Names of truths that fail; one alone without --all; None if that is left open. The truths whose names have a word of `first` are asked first."""
     if first and not options.truths and not options.all:
-        if failed := failing_truths(environment, first.split(), False):
+        if failed := failing_truths(environment, first.split(), False, QUICK_S if options.quick else None):
             return failed
     if options.quick:
         return None
     return failing_truths(environment, options.truths, options.all)
 
 
-def failing_truths(environment, words, ask_all):
-    """Names of the truths of these words that fail, or the name of the first."""
+def failing_truths(environment, words, ask_all, limit_s=None):
+    """Names of the truths of these words that fail, or the name of the first; of those that are judged within the limit."""
     command = [str(BUILD / "release" / "etalon"), "verify", *words]
     failed = []
     with subprocess.Popen(
         command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
     ) as process:
+        # Where a fault keeps errors from falling, a truth takes samples for a long time.
+        timer = threading.Timer(limit_s or threading.TIMEOUT_MAX, process.kill)
+        timer.daemon = True
+        timer.start()
         for line in process.stdout:
             if "  FAILED: " in line:
                 failed.append(line.split()[0])
                 if not ask_all:
                     process.kill()
                     break
+        ended = timer.is_alive()
+        timer.cancel()
+    if not failed and process.returncode == 2:
+        raise ValueError(f"no truth has one of the words: {' '.join(words)}")
     # Ended by itself without a verdict: it crashed, and somebody notices.
-    if not failed and process.returncode != 0:
+    if not failed and ended and process.returncode != 0:
         failed.append(f"exit status {process.returncode}")
     return failed
 
