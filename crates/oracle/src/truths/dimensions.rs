@@ -212,30 +212,44 @@ fn wavelength() -> Vec<Truth> {
         truth("two-lines-beside-each-other-in-a-pixel", beside(film(), 0)),
         truth("two-lines-above-each-other-in-a-pixel", beside(film(), 1)),
         truth("two-lines-one-after-the-other", in_turn()).claims(Claim::Motion).claims(Claim::WholeFormat),
-        line_at_first(lamp([-1.25, -10.0, -DEPTH_M], [20.0, 0.0, 0.0], [0.0, 20.0, 0.0], LINES_NM[0]), LINES_NM[0]),
+        lines_at_both_ends(
+            [-1.25, -38.75]
+                .map(|x| [x, -10.0, -DEPTH_M])
+                .into_iter()
+                .zip(LINES_NM)
+                .map(|(corner, from_nm)| (lamp(corner, [20.0, 0.0, 0.0], [0.0, 20.0, 0.0], from_nm), from_nm)),
+        ),
     ]
 }
 
-/// A lamp of one line that is there for the first sixteenth of the time. Paths carry wavelengths that are an eighth of all apart, so a share of time
-/// that is no number of eighths shows what two halves do not.
-fn line_at_first(lamp: Value, from_nm: u32) -> Truth {
+/// A lamp of one line that is there for the first sixteenth of the time, and one of another for the last. Paths carry wavelengths that are an eighth
+/// of all apart, so shares of time that are no number of eighths show what two halves do not.
+fn lines_at_both_ends(lamps: impl Iterator<Item = (Value, u32)>) -> Truth {
     const SHARE: f64 = 1.0 / 16.0;
     let key = |time_s: f64, x: f64| json!({ "time_s": time_s, "transform": [{ "translate_m": [x, 0, 0] }] });
+    let (lamps, from_nm): (Vec<Value>, Vec<u32>) = lamps.unzip();
     let scene = Scene::orthographic([0.0; 3], [0.0, 0.0, -1.0], 1e-6)
         .film(1, 1)
         .spp(1 << 16)
         .shutter([0.0, 1.0])
-        .moving(&[lamp], &[key(0.0, 0.0), key(1.0, 20.0)]);
+        .moving(&lamps, &[key(0.0, 0.0), key(1.0, 20.0)]);
     let w = photometric_weight;
-    let steps = move || (0..10).map(move |nm| f64::from(from_nm + nm));
-    let line: f64 = steps().map(|nm| 0.5 * (w(nm) + w(nm + 1.0))).sum();
-    Truth::new("line-for-a-sixteenth-of-the-time", &scene, SHARE * line, "∫ȳdλ over ten nanometres /16 ∫ȳdλ over all")
-        .because("The edge of the lamp, 1.25 m away, passes at 20 m/s after a sixteenth of a second. When it does has nothing to do with wavelengths.")
+    let sum = move |from_nm: &u32, of: &dyn Fn(f64) -> f64| (0..10).map(|nm| of(f64::from(from_nm + nm))).sum::<f64>();
+    let lines: Vec<f64> = from_nm.iter().map(|line| sum(line, &|nm| 0.5 * (w(nm) + w(nm + 1.0)))).collect();
+    let both = lines[0] + lines[1];
+    Truth::new("lines-for-a-sixteenth-of-the-time", &scene, SHARE * both, "∫ȳdλ over two times ten nanometres /16 ∫ȳdλ over all")
+        .because(
+            "An edge of the one lamp, 1.25 m away, passes at 20 m/s after a sixteenth of a second, an edge of the other as long before the end. When \
+             they do has nothing to do with wavelengths.",
+        )
         .confirmed("Simpson's rule over each nanometre of the table", 1e-6, move || {
-            SHARE * steps().map(|nm| (w(nm) + 4.0 * w(nm + 0.5) + w(nm + 1.0)) / 6.0).sum::<f64>()
+            let simpson = |nm: f64| (w(nm) + 4.0 * w(nm + 0.5) + w(nm + 1.0)) / 6.0;
+            SHARE * from_nm.iter().map(|line| sum(line, &simpson)).sum::<f64>()
         })
-        .or_else("wavelengths of the line only afterwards", 0.0)
-        .or_else("wavelengths of the line twice as often at first", 2.0 * SHARE * line)
+        .or_else("wavelengths of the lines only in between", 0.0)
+        .or_else("wavelengths of both lines twice as often", 2.0 * SHARE * both)
+        .or_else("those of the first twice as often, of the second never", 2.0 * SHARE * lines[0])
+        .or_else("those of the second twice as often, of the first never", 2.0 * SHARE * lines[1])
         .claims(Claim::PhotometricSensor)
         .claims(Claim::Motion)
         .claims(Claim::WholeFormat)
