@@ -16,18 +16,6 @@ use std::sync::LazyLock;
 
 /// Sets drawn by the camera: (film x, film y, lens 1, lens 2), (wavelength, time, –, –).
 pub const CAMERA_SETS: u32 = 2;
-/// For what the first set of the camera is, of one sample or of a row of them: the point of the film, the point of the lens.
-#[inline(always)]
-pub(crate) fn film_and_lens<T: Copy>([film_x, film_y, lens_1, lens_2]: [T; 4]) -> ([T; 2], [T; 2]) {
-    ([film_x, film_y], [lens_1, lens_2])
-}
-
-/// For what the second set of the camera is.
-#[inline(always)]
-pub(crate) fn wavelength_and_time<T: Copy>([wavelength, time, ..]: [T; 4]) -> (T, T) {
-    (wavelength, time)
-}
-
 /// Sets that each path vertex owns: (lobe, BSDF 1, BSDF 2, roulette), (light choice, light 1, light 2, mask).
 pub const SETS_PER_VERTEX: u32 = 2;
 
@@ -40,6 +28,19 @@ const CONNECTION_SETS: u32 = 1 << 25;
 
 /// Longest Owen-scrambled Sobol point set of the library; further samples come from independent sets.
 pub const SOBOL_POINTS: u32 = 1 << 16;
+
+/// The numbers of the camera's first set by what they are for: the point of the film and the point of the lens. They are numbers of one sample, or
+/// rows of numbers of several.
+#[inline(always)]
+pub(crate) fn film_and_lens<T: Copy>([film_x, film_y, lens_1, lens_2]: [T; 4]) -> ([T; 2], [T; 2]) {
+    ([film_x, film_y], [lens_1, lens_2])
+}
+
+/// The numbers of the camera's second set by what they are for.
+#[inline(always)]
+pub(crate) fn wavelength_and_time<T: Copy>([wavelength, time, ..]: [T; 4]) -> (T, T) {
+    (wavelength, time)
+}
 
 /// The numbers of one sample of one pixel.
 #[derive(Clone, Copy, Debug)]

@@ -43,7 +43,7 @@ impl<'a> Walk<'a, '_, '_> {
         // −1 is without limit.
         if let Some(depth) = element.number("max_depth")?.filter(|depth| *depth >= 1.0) {
             self.builder.integrator.insert("max_depth".to_owned(), json!(depth.min(f64::from(u32::MAX)) as u32));
-            if plugin.contains("vol") {
+            if matches!(plugin, "volpath" | "volpathmis" | "prbvolpath") {
                 self.limit_without_panes = Some(element.place.clone());
             }
         }

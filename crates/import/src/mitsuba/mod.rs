@@ -68,7 +68,7 @@ struct Walk<'a, 'w, 'b> {
     choices: Choices,
     /// Whether a pane of glass without thickness was read.
     has_panes: bool,
-    /// Where a limit on depth stands that does not count what goes through those.
+    /// Where a `max_depth` stands that does not count the ways through panes.
     limit_without_panes: Option<String>,
     /// The elements that are being read, each within the one before.
     open: Vec<*const Element>,
@@ -124,8 +124,8 @@ impl<'a> Walk<'a, '_, '_> {
             }
         }
         if let Some(place) = self.limit_without_panes.take().filter(|_| self.has_panes) {
-            let what = "this integrator does not count the way through a thindielectric as an edge of the path. Here it counts, so what is \
-                        behind one is darker: a larger max_depth leaves that out";
+            let what = "in Mitsuba this integrator does not count the way through a thindielectric as an edge of the path. Here it counts, so \
+                        what is behind one is darker. With a larger max_depth it is less so";
             self.builder.approximate(&place, what);
         }
         root.list_unused(self.builder);

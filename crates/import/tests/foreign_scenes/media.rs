@@ -96,7 +96,7 @@ fn bodies_that_are_neither_glass_nor_null_hold_their_media() {
     assert!(said(&imported).iter().any(|what| what.contains("medium of a polarising sheet")), "{:?}", said(&imported));
 }
 
-/// The program's integrators for media count no edge where light goes straight through a pane, but for a limit that is never reached.
+/// Mitsuba's integrators for media do not count the way through a pane as an edge. Without a limit on edges that changes nothing.
 #[test]
 fn a_limit_on_depth_that_does_not_count_panes_is_told() {
     for (integrator, depth, bsdf, is_told) in [

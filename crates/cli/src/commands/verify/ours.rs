@@ -21,10 +21,11 @@ const REPLICATES: u32 = 64;
 /// At first, all replicates together take this part of the samples that the truth's scene suggests: those are meant for independent
 /// numbers.
 const FIRST: u32 = 4;
-/// A reading too noisy to count takes this many times the paths, and again, up to so many times those of the first step.
+/// A reading that is too noisy to count takes this many times the paths. It does so again, as long as it has fewer paths than the first step times
+/// [`MOST_TO_COUNT`].
 const MORE_TO_COUNT: u32 = 2;
 const MOST_TO_COUNT: u32 = 1 << 8;
-/// What is to see more than that takes this many times the paths.
+/// A reading that counts takes this many times the paths to see more.
 const MORE: u32 = 4;
 /// What a thorough run wants to see of each truth, relative, and of those whose whole name was given. How many rays it spends on that for
 /// every truth, and how many where as many will do. In rays, not in seconds, so that what is read is the same on every machine.
@@ -32,8 +33,7 @@ const THOROUGH_SEES: f64 = 2e-3;
 const THOROUGH_SEES_BY_NAME: f64 = 2e-4;
 const THOROUGH_RAYS: u64 = 32_000_000;
 const THOROUGH_REACH_RAYS: u64 = 4_096_000_000;
-/// Rays of a run of all truths. What the truths do not need for their mistakes goes to those that see the
-/// least.
+/// Rays of a run of all truths. What the truths do not need for their mistakes goes to those that see the least.
 const RAYS_OF_ALL: u64 = 400_000_000;
 
 /// A truth's picture by our integrator, taken with many seeds.
