@@ -12,15 +12,16 @@
 //!
 //! Neither counts reflections within the glass, nor surfaces of which only a part is there. Such light is the walk's alone.
 
-use super::chain::Chain;
+use super::walker::Walker;
 use crate::film::Counters;
 use crate::guiding::RefractingBodies;
 use crate::integrator::observer::{Found, Observer};
 use crate::integrator::path::{Since, Step, Through};
 use crate::integrator::vertex::Vertex;
 use crate::integrator::wavelength_lanes::WavelengthModel;
-use crate::integrator::{LightDraw, Path};
+use crate::integrator::{Direction, LightDraw, MOST_VERTICES, Path};
 use crate::light::Emitter;
+use crate::media::Way;
 use crate::mis::{Density, power_heuristic};
 use crate::polarisation::Polarisation;
 use crate::sampler::Sampler;
@@ -31,11 +32,23 @@ use etalon_geometry::{Ray, SurfaceId};
 use etalon_optics::{Lanes, Vec3};
 
 /// Most interfaces that a shadow ray goes through.
-pub(super) const MOST_INTERFACES: u32 = 8;
+const MOST_INTERFACES: u32 = 8;
 /// Where media leave less of its light than this, a shadow ray goes on with a probability in proportion.
 const FAINT: f64 = 0.25;
 /// The number of the set before those that decide this.
 const SHADOW_SETS: u64 = 1 << 43;
+
+/// What a shadow ray brings through smooth interfaces.
+struct ShadowPassed<const N: usize> {
+    /// S₀ of radiance times throughput.
+    light: Lanes<f64, N>,
+    /// S₁, S₂ and S₃, where polarisation is followed.
+    stokes: Option<[Lanes<f64, N>; 3]>,
+    /// How many interfaces it went through.
+    interfaces: u32,
+    /// The probability with which the walk would have passed them.
+    probability: f64,
+}
 
 impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, P, N> {
     /// Whether a shadow ray starts within a body and may meet glass, as in milk in a glass. [`Path::add_refracted_light`] then finds all light
@@ -84,7 +97,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             part += 1;
             if survival == 1.0 || numbers.set(part)[0] < survival { survival } else { 0.0 }
         };
-        let Some(passed) = Chain::shadow(self, world, vertex).pass(wi, draw.light, goes_on, counters) else { return };
+        let Some(passed) = self.refracted(world, vertex, (wi, draw.light), goes_on, counters) else { return };
         let of_walk = of_walk * passed.probability;
         // As straight, if nothing was in the way.
         let density = match passed.interfaces {
@@ -104,6 +117,89 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         }
         let found = self.gather(passed.light * factor);
         observer.light(self.vertex, Found::ShadowRay { light: draw.light }, found);
+    }
+
+    /// What a light sends to a vertex along a shadow ray in a direction, refracted at each smooth interface; `None` if the ray does not come to it.
+    /// `goes_on` decides with which probability the ray goes on after each of its parts, by the share that media have let through.
+    fn refracted(
+        &self,
+        world: &World<'a>,
+        vertex: &impl Vertex<'a>,
+        (wi, light): (Vec3<f64>, u32),
+        mut goes_on: impl FnMut(Lanes<f64, N>) -> f64,
+        counters: &mut Counters,
+    ) -> Option<ShadowPassed<N>> {
+        // Edges of the path: to this vertex, to each interface, and to the lamp.
+        let most = MOST_INTERFACES.min(world.max_depth.saturating_sub(self.vertex + 2));
+        let mut walker = Walker::like(self);
+        let mut ray = walker.leave(self, world, vertex, wi);
+        let walker = &mut walker.path;
+        let (mut start, mut interfaces, mut probability) = (ray.origin, 0, 1.0);
+        let mut left = Lanes::ONE;
+        for _ in 0..MOST_VERTICES {
+            counters.rays += 1;
+            let met = world.intersect(&ray, &mut walker.walk, &mut walker.stack, counters);
+            if world.participating.is_some() {
+                if let Some(met) = &met {
+                    walker.stack.meet(met.surface.interior(), met.meets_front());
+                }
+                let length = met.as_ref().map_or(f64::INFINITY, |met| (met.point.position - start).length());
+                left *= walker.transmittance(
+                    world,
+                    &walker.stack,
+                    &Way { origin: start, direction: ray.direction, length },
+                );
+                let survival = goes_on(left);
+                if survival == 0.0 {
+                    return None;
+                }
+                left /= survival;
+            }
+            let Some(mut met) = met else {
+                let radiance = walker.radiance_of_sky(world, &ray, light)?;
+                return Some(ShadowPassed::by(walker, radiance * left, interfaces, probability));
+            };
+            let is_of_light = match interfaces {
+                0 => met.surface.light(met.point.surface) == Some(light),
+                _ if met.point.surface == vertex.point().surface => false,
+                _ => world.is_of(&met.surface, met.point.surface, light),
+            };
+            if is_of_light {
+                let radiance = walker.radiance_of_surface(world, &met)?;
+                return Some(ShadowPassed::by(walker, radiance * left, interfaces, probability));
+            }
+            match met.share_that_stops(world) {
+                0.0 if !met.surface.shines() => {
+                    start = met.point.position;
+                    walker.walk.pass(&met, &mut walker.stack);
+                    continue;
+                }
+                1.0 if interfaces < most && !met.surface.shines() => {}
+                _ => return None,
+            }
+            met.prepare_scattering(world);
+            let transmitted = 1.0 - walker.reflection_probability(world, &met)?;
+            if transmitted == 0.0 {
+                return None;
+            }
+            let u_lobe = 1.0_f64.next_down();
+            let direction = walker.sample_direction(world, &met, [u_lobe, 0.5, 0.5], &mut ())?;
+            if let Direction::General { sample, .. } = &direction
+                && !pass_alike(&sample.lane_density)
+            {
+                return None;
+            }
+            let taken = walker.scatter(world, &met, direction, u_lobe);
+            if !met.goes_through(taken.wi) {
+                return None;
+            }
+            let next = met.point.spawn(taken.wi);
+            walker.beta *= transmitted;
+            probability *= transmitted;
+            interfaces += 1;
+            (ray, start) = (next, next.origin);
+        }
+        None
     }
 
     /// What the last step is after an interface that the path goes through in the direction `wi`: still one that a shadow ray may have taken, if
@@ -133,6 +229,20 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
     }
 }
 
+impl<const N: usize> ShadowPassed<N> {
+    /// What a walker brings that has come through.
+    fn by<M: WavelengthModel<N>, P: Polarisation<N>>(
+        walker: &Path<'_, M, P, N>,
+        radiance: Lanes<f64, N>,
+        interfaces: u32,
+        probability: f64,
+    ) -> Self {
+        let light = walker.beta * radiance * walker.lanes.weight();
+        let [s0, others @ ..] = walker.polarisation.of_unpolarised();
+        Self { light: light * s0, stokes: P::FOLLOWED.then(|| others.map(|s| light * s)), interfaces, probability }
+    }
+}
+
 /// Whether glass may be in the way of a shadow ray.
 #[inline]
 fn may_meet_glass<'a>(world: &World<'a>, vertex: &impl Vertex<'a>, draw: &LightDraw) -> bool {
@@ -143,7 +253,7 @@ fn may_meet_glass<'a>(world: &World<'a>, vertex: &impl Vertex<'a>, draw: &LightD
 
 /// Whether an interface lets all wavelengths pass with the same probability, or the hero's alone. Films may not: the weights would then depend on
 /// which wavelength is the hero.
-pub(super) fn pass_alike<const N: usize>(lane_density: &Lanes<f64, N>) -> bool {
+fn pass_alike<const N: usize>(lane_density: &Lanes<f64, N>) -> bool {
     *lane_density == Lanes::ONE || *lane_density == Lanes::ONE.hero_only()
 }
 
@@ -186,7 +296,7 @@ impl<'a> World<'a> {
     }
 
     /// Whether a surface is of the light that a shadow ray looks for, so that it may count.
-    pub(super) fn is_of(&self, surface: &Surface<'_>, point: SurfaceId, light: u32) -> bool {
+    fn is_of(&self, surface: &Surface<'_>, point: SurfaceId, light: u32) -> bool {
         let lamp = self.lights.lights()[light as usize].emitter().and_then(|emitter| self.lamp(emitter));
         lamp == Some(surface.object) && surface.light(point).is_some()
     }

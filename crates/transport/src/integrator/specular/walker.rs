@@ -1,6 +1,7 @@
 //! Steps along a chain of mirrors and smooth interfaces.
 
 use crate::film::Counters;
+use crate::integrator::vertex::Vertex;
 use crate::integrator::wavelength_lanes::{OneLane, WavelengthModel};
 use crate::integrator::{Direction, MOST_VERTICES, Path};
 use crate::media::{MediumStack, Way};
@@ -12,7 +13,7 @@ use crate::scene::shading_tables::BsdfKind;
 use crate::scene::world::World;
 use crate::wavelength::Wavelengths;
 use etalon_geometry::Ray;
-use etalon_optics::Lanes;
+use etalon_optics::{Lanes, Vec3};
 
 /// The share of the chains that are reflected where some light is, and some passes.
 const REFLECTS: f64 = 0.2;
@@ -64,6 +65,21 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Walker<'a, M
         walker.vertex = path.vertex;
         walker.spectra = path.spectra.clone();
         Self { path: walker, asks_media: true }
+    }
+
+    /// At the vertex of the path that it is like, with what the path has there and what the vertex does to polarisation; the ray in a direction.
+    pub(super) fn leave<V: Vertex<'a>>(
+        &mut self,
+        path: &Path<'a, M, P, N>,
+        world: &World<'a>,
+        vertex: &V,
+        wi: Vec3<f64>,
+    ) -> Ray<f64> {
+        self.begin(world, media_toward(world, path, vertex, wi));
+        let walker = &mut self.path;
+        (walker.beta, walker.lanes, walker.polarisation) = (path.beta, path.lanes, path.polarisation);
+        walker.polarisation.follow(vertex.wo(), wi, || vertex.mueller(&path.wavelengths.lambda_nm, wi));
+        vertex.point().spawn(wi)
     }
 
     /// Back at the beginning of the chain, in these media if they are followed.
@@ -144,4 +160,14 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Walker<'a, M
         let taken = self.path.scatter(world, &from.vertex, from.direction, from.u_lobe);
         from.vertex.point.spawn(taken.wi)
     }
+}
+
+/// The media behind a vertex in a direction, where media are followed. The path knows what is behind the surface that it has met.
+pub(super) fn media_toward<'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
+    world: &World<'a>,
+    path: &Path<'a, M, P, N>,
+    vertex: &V,
+    wi: Vec3<f64>,
+) -> Option<MediumStack<'a>> {
+    world.follows_media().then(|| vertex.media_toward(path, wi))
 }
