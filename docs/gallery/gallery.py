@@ -61,7 +61,7 @@ PICTURES = [
     Picture("cloud", "scenes/cloud.json", ["--exposure", "0", "--curve", "agx"],
             "A cloud of drops in the afternoon sun. Light is scattered a hundred times in it: look at the rim toward the sun, at the dark base, and at "
             "the blue of the sky in the shadows.", size="480x300"),
-    Picture("milk", "scenes/milk.json", ["--exposure", "0.5"],
+    Picture("milk", "scenes/milk.json", ["--exposure", "-0.3", "--curve", "agx"],
             "A glass of milk and one of watered milk. Short waves are scattered more: the watered milk is bluish where light comes from the side, and "
             "reddish where light comes through.", error="10%", size="320x240"),
     Picture("movement", "scenes/movement.glb", ["--exposure", "0.7", "--curve", "agx"],
