@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Faults by meaning: exchanges single expressions of the renderer for wrong ones, one at a time, and asks who notices.
 
-`tests/faults/faults.toml` lists them. All are compiled into one program, in a copy of the tree under `target/faults`; the environment
+`tests/faults/faults.toml` lists them, and `--catalogue first` or `second` takes one of two lists of 40 that were written from the sources and the scene
+format alone, without a look at the tests or the oracle. All faults of a list are compiled into one program, in a copy of the tree under `target/faults`; the environment
 variable ETALON_FAULT selects one by its number. So a fault costs a run, not a build.
 
     tests/faults.py list
@@ -54,9 +55,9 @@ pub fn on(number: u32) -> bool {
 '''
 
 
-def catalogue():
-    """The faults, in order; their numbers begin at 1."""
-    with open(TREE / "tests" / "faults" / "faults.toml", "rb") as file:
+def catalogue(name):
+    """The faults of a list, in order; their numbers begin at 1."""
+    with open(TREE / "tests" / "faults" / f"{name}.toml", "rb") as file:
         faults = tomllib.load(file)["fault"]
     for number, fault in enumerate(faults, 1):
         fault["number"] = number
@@ -300,6 +301,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("command", choices=["list", "check", "build", "run", "table"])
     parser.add_argument("names", nargs="*", help="of faults, for run; a file, for table")
+    parser.add_argument("--catalogue", choices=["faults", "first", "second"], default="faults")
     parser.add_argument("--by", choices=["verify", "tests", "both"], default="both")
     parser.add_argument("--tests", default="", metavar="OPTIONS", help="as cargo test takes them, such as '--lib --test integration'")
     parser.add_argument("--truths", nargs="*", default=[], metavar="WORD", help="words of the names of truths; all by default")
@@ -309,7 +311,7 @@ def main():
     options = parser.parse_args()
     if options.quick and (options.by == "tests" or options.truths or options.all):
         parser.error("--quick asks `verify` for the truths that faults name: no --by tests, --truths or --all beside it")
-    faults = catalogue()
+    faults = catalogue(options.catalogue)
     try:
         if options.command == "list":
             for fault in faults:
