@@ -12,6 +12,10 @@ something polarises, in its polarised one. Two pictures agree if for one of the 
 - the mean of z² is below 1.6 over blocks of 4 × 4 pixels and below 2.2 over blocks of 8 × 8, or the difference beyond noise is at most 0.5 % of
   the mean.
 
+Mitsuba's spectral variants interpolate the brightness and the colour of a sky's texels apart. Where two pictures differ under the image of a sky, Mitsuba
+renders once more with a sky that it need not interpolate: an image of 5 × 5 texels for each texel (3 × 3 of large ones), which are interpolated beforehand. Pictures
+that agree then are counted apart.
+
 OUT has the pictures and results.json. A scene that stands there is not rendered again.
 """
 
@@ -31,6 +35,8 @@ POLARISED = "llvm_ad_spectral_polarized"
 # Plugins that are nothing without polarisation.
 POLARISE = re.compile(r"""type=["'](polarizer|retarder|circular|stokes|measured_polarized)["']""")
 PASSES = 16
+FINE_SKY = "with a fine sky"
+LARGE_SKY = 1024
 INCLUDED = re.compile(r"""<include\s+filename=["'](?:[^"']*[/\\])?([^"'/\\]+)["']""")
 OPEN = re.compile(r"\$(\w+)")
 DEFAULTS = re.compile(r"""<default\s+name=["'](\w+)""")
@@ -38,10 +44,39 @@ DEFAULTS = re.compile(r"""<default\s+name=["'](\w+)""")
 MOST_SQUARES = {4: 1.6, 8: 2.2}
 
 
-def by_mitsuba(mi, scene, given, width, spp):
-    """Renders about as wide as this: passes × rows × columns × channels."""
+def skies(mi, scene, given):
+    """The texels of the skies of a scene: rows × columns × RGB, by the names of their parameters."""
+    mi.set_variant("llvm_ad_rgb")
+    params = mi.traverse(mi.load_file(str(scene), **given))
+    # A column of the other edge stands at each side.
+    return {key: np.array(params[key])[:, 1:-1, :3] for key in params.keys() if key.endswith("data") and f"{key[:-4]}to_world" in params and f"{key[:-4]}scale" in params}
+
+
+def finer(texels):
+    """As Mitsuba's RGB variants interpolate: columns have their texels in the middle and close to a ring, rows begin and end with texels."""
+    rows, columns = texels.shape[:2]
+    # Odd, so that the texels of the file are among them.
+    times = 5 if columns <= LARGE_SKY else 3
+
+    def between(places, first, last):
+        share = (places - np.floor(places))[:, None, None]
+        return lambda values: (1 - share) * values[first] + share * values[last]
+
+    places = (np.arange(columns * times) + 0.5) / times - 0.5
+    left = np.floor(places).astype(int)
+    wide = between(places, left % columns, (left + 1) % columns)(texels.swapaxes(0, 1)).swapaxes(0, 1)
+    places = np.arange((rows - 1) * times + 1) / times
+    upper = np.floor(places).astype(int)
+    return between(places, upper, np.minimum(upper + 1, rows - 1))(wide)
+
+
+def by_mitsuba(mi, scene, given, width, spp, skies={}):
+    """Renders about as wide as this, with other texels for these skies: passes × rows × columns × channels."""
     loaded = mi.load_file(str(scene), **given)
     params = mi.traverse(loaded)
+    for key, texels in skies.items():
+        sky = mi.load_dict({"type": "envmap", "bitmap": mi.Bitmap(finer(texels).astype(np.float32))})
+        params[key] = mi.traverse(sky)["data"]
     key = next(key for key in params.keys() if key.endswith("film.size"))
     full = [int(side) for side in np.array(params[key])]
     # Of the widths around, that which keeps the shape of a picture best.
@@ -119,6 +154,10 @@ def compared(mi, scene, stem, args):
                 result["refused"] = lines[-12:]
                 break
         result[variant] = judge(channels(ours)[0], passes)
+    if "etalon" in result and "refused" not in result and not agrees(result) and (texels := skies(mi, scene, given)):
+        variant = POLARISED if is_polarised else VARIANTS[0]
+        mi.set_variant(variant)
+        result[FINE_SKY] = judge(channels(ours)[0], by_mitsuba(mi, scene, given, args.width, args.spp, texels))
     return result if "etalon" in result else None
 
 
@@ -153,14 +192,22 @@ def main():
             print(f"{name}: REFUSED {' '.join(result['refused'])[:300]}", flush=True)
         else:
             found = {variant: of for variant, of in result.items() if variant != "etalon"}
-            print(f"{name}: {'agree' if agrees(result) else 'DIFFER'} {found} {result['etalon']}", flush=True)
+            print(f"{name}: {told(result)} {found} {result['etalon']}", flush=True)
     loaded = [result for result in results.values() if result]
-    agree = sum(map(agrees, loaded))
-    print(f"{len(loaded)} scenes, {sum('refused' not in r for r in loaded)} load, {agree} agree ({100 * agree / max(len(loaded), 1):.0f} %)")
+    agree, fine = sum(map(agrees, loaded)), sum(FINE_SKY in result and result[FINE_SKY]["agree"] for result in loaded)
+    share = 100 / max(len(loaded), 1)
+    print(f"{len(loaded)} scenes, {sum('refused' not in r for r in loaded)} load, {agree} agree ({share * agree:.0f} %); with a fine sky {agree + fine} ({share * (agree + fine):.0f} %)")
+
+
+def told(result):
+    if agrees(result):
+        return "agree"
+    return f"agree {FINE_SKY}" if FINE_SKY in result and result[FINE_SKY]["agree"] else "DIFFER"
 
 
 def agrees(result):
-    return any(isinstance(of, dict) and of["agree"] for of in result.values())
+    """As the scene is."""
+    return any(isinstance(of, dict) and of["agree"] for name, of in result.items() if name != FINE_SKY)
 
 
 if __name__ == "__main__":
