@@ -25,7 +25,7 @@ const FIRST: u32 = 4;
 /// [`MOST_TO_COUNT`].
 const MORE_TO_COUNT: u32 = 2;
 const MOST_TO_COUNT: u32 = 1 << 8;
-/// A reading that counts takes this many times the paths to see more.
+/// A reading that counts takes this many times the paths to see more, or fewer where these will do.
 const MORE: u32 = 4;
 /// What a thorough run wants to see of each truth, relative, and of those whose whole name was given. How many rays it spends on that for
 /// every truth, and how many where as many will do. In rays, not in seconds, so that what is read is the same on every machine.
@@ -249,9 +249,14 @@ fn measured(
         if enough && !(args.thorough && thorough()) {
             break Ok((reading, effort));
         }
-        effort = effort.saturating_mul(if enough { MORE } else { MORE_TO_COUNT });
+        effort = effort.saturating_mul(if enough { more_to_see(seen, wanted) } else { MORE_TO_COUNT });
         seen_before = seen;
     }
+}
+
+/// How many times the samples of a reading that saw `seen` are taken to see `wanted`: at 1/√n as many as it takes, a power of two up to [`MORE`].
+fn more_to_see(seen: f64, wanted: f64) -> u32 {
+    if seen <= wanted * f64::from(MORE_TO_COUNT).sqrt() { MORE_TO_COUNT } else { MORE }
 }
 
 /// What a thorough run of these names wants to see of a truth, relative. A name that is only a part of the truth's asks for a group.
@@ -286,6 +291,11 @@ mod tests {
         let sees = |name: &str| thorough_sees(&[name.to_owned()], &truth);
         assert_eq!(sees("eye-in-glass"), 2e-4);
         assert_eq!([sees("eye"), thorough_sees(&[], &truth)], [2e-3; 2]);
+    }
+
+    #[test]
+    fn the_last_step_is_as_long_as_it_takes() {
+        assert_eq!([1.4, 1.42, 9.0].map(|times| more_to_see(times * 2e-3, 2e-3)), [2, 4, 4]);
     }
 
     #[test]
