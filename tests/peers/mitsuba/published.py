@@ -44,12 +44,16 @@ DEFAULTS = re.compile(r"""<default\s+name=["'](\w+)""")
 MOST_SQUARES = {4: 1.6, 8: 2.2}
 
 
+def keys_of_skies(params):
+    return [key for key in params.keys() if key.endswith("data") and f"{key[:-4]}to_world" in params and f"{key[:-4]}scale" in params]
+
+
 def skies(mi, scene, given):
-    """The texels of the skies of a scene: rows × columns × RGB, by the names of their parameters."""
+    """The texels of the skies of a scene: rows × columns × RGB."""
     mi.set_variant("llvm_ad_rgb")
     params = mi.traverse(mi.load_file(str(scene), **given))
     # A column of the other edge stands at each side.
-    return {key: np.array(params[key])[:, 1:-1, :3] for key in params.keys() if key.endswith("data") and f"{key[:-4]}to_world" in params and f"{key[:-4]}scale" in params}
+    return [np.array(params[key])[:, 1:-1, :3] for key in keys_of_skies(params)]
 
 
 def finer(texels):
@@ -70,11 +74,12 @@ def finer(texels):
     return between(places, upper, np.minimum(upper + 1, rows - 1))(wide)
 
 
-def by_mitsuba(mi, scene, given, width, spp, skies={}):
-    """Renders about as wide as this, with other texels for these skies: passes × rows × columns × channels."""
+def by_mitsuba(mi, scene, given, width, spp, skies=()):
+    """Renders about as wide as this, with other texels for its skies: passes × rows × columns × channels."""
     loaded = mi.load_file(str(scene), **given)
     params = mi.traverse(loaded)
-    for key, texels in skies.items():
+    # Names differ between variants where the file has none.
+    for key, texels in zip(keys_of_skies(params), skies):
         sky = mi.load_dict({"type": "envmap", "bitmap": mi.Bitmap(finer(texels).astype(np.float32))})
         params[key] = mi.traverse(sky)["data"]
     key = next(key for key in params.keys() if key.endswith("film.size"))
