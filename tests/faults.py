@@ -174,7 +174,7 @@ def judged_by_verify(environment, options, first=""):
 
 def failing_truths(environment, words, ask_all, limit_s=None):
     """Names of the truths of these words that fail, or the name of the first; of those that are judged within the limit."""
-    command = [str(BUILD / "release" / "etalon"), "verify", *words]
+    command = [str(BUILD / "release" / "etalon"), "verify", "--", *words]
     failed = []
     with subprocess.Popen(
         command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
