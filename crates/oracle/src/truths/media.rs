@@ -8,6 +8,7 @@ use super::{
     Claim, Truth, air, densities,
     scene::{Scene, black, block, glass, level_square, rough_glass, solid, sphere},
 };
+use crate::quadrature::interval;
 use crate::transfer::{
     HalfSpace, Slab, ball_transmittance, by_scattering_orders, glow_of_point_lamp, henyey_greenstein, legendre_moments,
     scattered_once,
@@ -18,7 +19,7 @@ pub(super) fn truths() -> Vec<Truth> {
     list.extend(half_spaces());
     list.extend(slabs());
     list.extend(scattered_once_in_slabs());
-    list.extend([glow_of_a_lamp(), mean_way_in_a_ball(), glowing_ball(), glowing_fog()]);
+    list.extend([glow_of_a_lamp(), glow_in_forward_fog(), mean_way_in_a_ball(), glowing_ball(), glowing_fog()]);
     list.extend(densities::truths());
     list.extend(air::truths());
     list.into_iter().map(|truth| truth.claims(Claim::Scattering)).collect()
@@ -296,6 +297,45 @@ fn glow_of_a_lamp() -> Truth {
             };
             3.0 * scattering / (4.0 * PI) * step * (0..n).map(at).sum::<f64>()
         })
+        .sees(5e-3)
+}
+
+/// As before, but all places of the ray lie beyond the lamp and scatter its light back, in fog that mostly scatters forward.
+fn glow_in_forward_fog() -> Truth {
+    let (scattering, extinction, g, h) = (0.4, 0.5, 0.6, 0.5_f64);
+    let (from, to) = (-2.0, 0.1);
+    // Of a place at height z, the lamp being at 0: what it sends on straight up, the fog ending at `to`.
+    let glow = move |z: f64, phase: &dyn Fn(f64) -> f64| {
+        let d = h.hypot(z);
+        3.0 * scattering / (4.0 * PI) * phase(z / d) * (-extinction * (to - z + d)).exp() / (d * d)
+    };
+    let over_places = move |phase: &dyn Fn(f64) -> f64| interval(|z| glow(z, phase), from, to, 1e-13).value;
+    let ahead = move |cosine: f64| henyey_greenstein(g, cosine);
+    let scene = Scene::orthographic([0.0, 0.0, 5.0], [0.0; 3], 1e-3)
+        .thing(json!({
+            "shape": block([-50.0, -50.0, from], [50.0, 50.0, to]),
+            "material": boundary(&medium(scattering, extinction - scattering, &forward(g))),
+        }))
+        .point_light([h, 0.0, 0.0], 3.0)
+        .depth(2);
+    Truth::new("lamp-in-forward-fog-beside-the-ray", &scene, over_places(&ahead), "σₛI/4π ∫ p(cos θ) e^(−σ(s + d))/d² ds")
+        .because(
+            "Each place of the ray sends σₛp(cos θ)/4π of what comes to it from the lamp, I e^(−σd)/d², towards the eye. θ is the angle between the ways \
+             from the lamp and to the eye. Paths of two edges.",
+        )
+        .confirmed("a sum over angles at the lamp", 1e-6, move || {
+            // dz/d² is dφ/h.
+            let (first, last) = ((from / h).atan(), (to / h).atan());
+            let n = 100_000;
+            let step = (last - first) / f64::from(n);
+            let at = |i: i32| {
+                let z = h * (first + (f64::from(i) + 0.5) * step).tan();
+                glow(z, &ahead) * (h * h + z * z) / h
+            };
+            step * (0..n).map(at).sum::<f64>()
+        })
+        .or_else("the angle of scattering reversed", over_places(&|cosine| ahead(-cosine)))
+        .or_else("scattered alike to all sides", over_places(&|_| 1.0))
         .sees(5e-3)
 }
 

@@ -1,7 +1,7 @@
 //! What moves while the shutter is open: its picture is the mean over that time.
 //!
-//! Time runs from 0 to 1 s. Each value is an integral over time in closed form, confirmed by quadrature of what is to be seen at
-//! each moment.
+//! Time runs from 0 to 1 s, unless a name says otherwise. Each value is an integral over time in closed form, confirmed by quadrature of
+//! what is to be seen at each moment.
 
 use std::f64::consts::PI;
 
@@ -14,8 +14,11 @@ use super::{
 use crate::quadrature::{interval, rectangle};
 
 pub(super) fn truths() -> Vec<Truth> {
-    let mut list =
-        vec![passing_bar(), turning_blade(), passing_camera(), circling_camera(), receding_sphere(), growing_disk()];
+    let mut list = vec![passing_bar(), turning_blade(), circling_camera(), receding_sphere(), growing_disk()];
+    list.extend(
+        [("camera-passing-an-edge", [0.0, 1.0]), ("camera-passing-an-edge-after-two-seconds", [2.0, 3.0])]
+            .map(passing_camera),
+    );
     list.extend(["mis", "light", "bsdf"].map(approaching_disk));
     list.push(departing_square());
     list.into_iter().map(|truth| truth.claims(Claim::Motion)).collect()
@@ -106,18 +109,20 @@ fn turning_blade() -> Truth {
         .or_else("matrices mixed in proportion to time", mixed)
 }
 
-fn passing_camera() -> Truth {
-    let keys = [at(0.0, &moved([-1.0, 0.0, 0.0])), at(1.0, &moved([3.0, 0.0, 0.0]))];
+fn passing_camera((name, [opens, closes]): (&str, [f64; 2])) -> Truth {
+    let keys = [at(opens, &moved([-1.0, 0.0, 0.0])), at(closes, &moved([3.0, 0.0, 0.0]))];
     let half = parallelogram([0.0, -9.0, 0.0], [9.0, 0.0, 0.0], [0.0, 18.0, 0.0]);
-    let scene = pixel(0.0, 0.0, 1.0).shutter([0.0, 1.0]).camera_keys(&keys).lamp(half, black(), 1.0, "front");
-    Truth::new("camera-passing-an-edge", &scene, 0.75, "3 m / 4 m")
+    let scene = pixel(0.0, 0.0, 1.0).shutter([opens, closes]).camera_keys(&keys).lamp(half, black(), 1.0, "front");
+    let truth = Truth::new(name, &scene, 0.75, "3 m / 4 m")
         .because("The camera moves from −1 m to 3 m over a plane that is lit beyond 0 m; the middle of the picture is there for 3/4 of the time, and the two sides of it by as much more and less.")
         .confirmed("quadrature over time of the lit part", 1e-9, || {
             let lit = |c: f64| (c + 0.5).clamp(0.0, 1.0);
             [[-1.0, -0.5], [-0.5, 0.5], [0.5, 3.0]].map(|[a, b]| interval(lit, a, b, 1e-14).value).iter().sum::<f64>() / 4.0
         })
         .or_else("as the shutter opens", 0.0)
-        .or_else("in the middle of the time", 1.0)
+        .or_else("in the middle of the time", 1.0);
+    // The camera then moves in 1/closes of the time, and rests.
+    if opens > 0.0 { truth.or_else("times of keys divided by the time of closing", 1.0 - 0.25 / closes) } else { truth }
 }
 
 /// A camera that goes around what it looks at, as on a turntable: it sees one side of a card for a third of the time.

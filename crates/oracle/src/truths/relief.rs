@@ -1,10 +1,11 @@
-//! Normals that are not those of the shape: of vertices, of normal maps and of bump maps, also on stretched and mirrored things.
+//! Normals that are not those of the shape: of vertices, of normal maps and of bump maps, also on stretched and mirrored things; and those
+//! of a stretched ball.
 
 use serde_json::{Value, json};
 
 use super::{
     Truth,
-    scene::{Scene, grey_hdr, parallelogram, radiance_hdr},
+    scene::{Scene, grey_hdr, parallelogram, radiance_hdr, sphere},
 };
 use crate::vector::{Vec3, dot, normalize, scale};
 
@@ -13,6 +14,7 @@ pub(super) fn truths() -> Vec<Truth> {
     list.extend(bump_maps());
     list.extend(vertex_normals());
     list.push(interpolated());
+    list.push(stretched_ball());
     list
 }
 
@@ -263,5 +265,37 @@ fn interpolated() -> Truth {
         })
         .or_else("not made one long before", mean(100, normals))
         .or_else("one normal for all", shown([0, 1, 2].map(|k| unit.iter().map(|n| n[k]).sum())))
+        .sees(1e-3)
+}
+
+/// A ball of radius 1, of which an instance is twice as long along x.
+fn stretched_ball() -> Truth {
+    let centre = [1.0, 0.3];
+    let ball = json!({ "shape": sphere([0.0; 3], 1.0), "material": white() });
+    let scene = view(centre)
+        .set("groups", "ball", json!({ "objects": [ball] }))
+        .whole("instances", json!([{ "group": "ball", "transforms": [[{ "scale": [2, 1, 1] }]] }]));
+    let height = |x: f64, y: f64| (1.0 - 0.25 * x * x - y * y).sqrt();
+    let mean = move |normal: &dyn Fn(f64, f64) -> Vec3| {
+        let [x, y] = centre.map(|at: f64| [at - 0.1, at + 0.1]);
+        crate::quadrature::rectangle(|x, y| shown(normal(x, y)), x, y, 1e-12, 100_000).value / 0.04
+    };
+    let value = mean(&|x, y| [0.25 * x, y, height(x, y)]);
+    Truth::new("ball-of-a-stretched-instance", &scene, value, "mean over the picture of ρ n·l, n ∝ (x/4, y, z)")
+        .because("The normal of the ellipsoid x²/4 + y² + z² = 1 is its gradient, made one long: in parallel light of irradiance π it shows ρ n·l.")
+        .confirmed("the normal across two tangents, by a sum over the picture", 1e-5, move || {
+            let steps = 200;
+            let place = |k: u32, centre: f64| centre - 0.1 + 0.2 * (f64::from(k) + 0.5) / f64::from(steps);
+            let at = |x: f64, y: f64| {
+                let z = height(x, y);
+                shown(crate::vector::cross([1.0, 0.0, -0.25 * x / z], [0.0, 1.0, -y / z]))
+            };
+            let sum: f64 = (0..steps)
+                .flat_map(|i| (0..steps).map(move |j| (i, j)))
+                .map(|(i, j)| at(place(i, centre[0]), place(j, centre[1])))
+                .sum();
+            sum / f64::from(steps).powi(2)
+        })
+        .or_else("normals placed as directions are", mean(&|x, y| [x, y, height(x, y)]))
         .sees(1e-3)
 }
