@@ -9,7 +9,7 @@ variable ETALON_FAULT selects one by its number. So a fault costs a run, not a b
     tests/faults.py check                 every fault applies, and the copy with all of them compiles
     tests/faults.py build                 builds `etalon` and the tests with all faults
     tests/faults.py run [NAME ...]        judges faults: by `etalon verify` alone, by the tests alone, and so by both
-    tests/faults.py table [FILE]          writes what has been judged as a table, in a page after its mark
+    tests/faults.py table [FILE]          writes what has been judged as a table, in a page between the mark of the list and the next heading
 
 `run` goes on where it was interrupted: `target/faults/results.jsonl` has a line for each fault and judge. `--by verify` or `--by tests` asks
 one judge alone. A judge stops at the first truth or test that fails; `--all` names them all. `verify` asks first for the truths that the key
@@ -37,7 +37,6 @@ RESULTS = WORK / "results.jsonl"
 OPEN, CLOSE = "«", "»"
 # What a run with --quick gives the truths of a fault.
 QUICK_S = 120
-MARK = "<!-- written by tests/faults.py table -->\n\n"
 
 SWITCH = '''//! Which of the faults of `tests/faults` is switched on.
 
@@ -266,7 +265,7 @@ def run(faults, options):
             print(f"{fault['name']}: {judge} {'notices: ' + failed[0] if failed else 'passes'}", flush=True)
 
 
-def table(faults, path):
+def table(faults, path, name):
     found = results()
     judges = {}
     for fault in faults:
@@ -282,16 +281,21 @@ def table(faults, path):
             lines.append(f"| {fault['name']} | {what} | {cell(row['verify'])} | {cell(row['tests'])} |")
     counts = []
     for judge in ("verify", "tests"):
-        rows = [judges[fault["name"]][judge] for fault in live if fault["name"] in judges and judges[fault["name"]][judge]]
-        counts.append(f"{judge} notices {sum(row['noticed'] for row in rows)} of {len(rows)}")
+        rows = [row for fault in live if (row := judges.get(fault["name"], {}).get(judge))]
+        if rows:
+            counts.append(f"{judge} notices {sum(row['noticed'] for row in rows)} of {len(rows)} that it judged")
     both = [row for fault in live if all((row := judges.get(fault["name"], {"verify": None})).values())]
-    noticed = sum(row["verify"]["noticed"] or row["tests"]["noticed"] for row in both)
-    text = "\n".join([*lines, "", f"{', '.join(counts)}, one or both {noticed} of {len(both)}.", ""])
+    if both:
+        counts.append(f"one or both notice {sum(row['verify']['noticed'] or row['tests']['noticed'] for row in both)} of {len(both)}")
+    text = "\n".join([*lines, "", f"Of {len(live)} faults {len(live) - len(judges)} are not judged; {', '.join(counts)}.", ""])
     if path:
-        # What a page says before the table stays.
-        before, mark, _ = pathlib.Path(path).read_text().partition(MARK) if pathlib.Path(path).exists() else ("", "", "")
+        mark = f"<!-- written by tests/faults.py table --catalogue {name} -->\n\n"
+        before, found, rest = pathlib.Path(path).read_text().partition(mark)
+        if not found:
+            sys.exit(f"{path} has no line {mark.strip()}")
+        _, heading, after = f"\n{rest}".partition("\n## ")
         temporary = pathlib.Path(f"{path}.part")
-        temporary.write_text(f"{before}{mark}{text}")
+        temporary.write_text(f"{before}{mark}{text}{heading}{after}")
         temporary.replace(path)
     else:
         print(text, end="")
@@ -326,7 +330,7 @@ def main():
         elif options.command == "run":
             run(faults, options)
         else:
-            table(faults, options.names[0] if options.names else None)
+            table(faults, options.names[0] if options.names else None, options.catalogue)
     except ValueError as error:
         sys.exit(str(error))
 
