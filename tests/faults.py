@@ -266,10 +266,10 @@ def run(faults, options):
 
 
 def table(faults, path, name):
-    found = results()
+    judged = results()
     judges = {}
     for fault in faults:
-        row = {judge: found.get((fault["name"], fault["digest"], judge)) for judge in ("verify", "tests")}
+        row = {judge: judged.get((fault["name"], fault["digest"], judge)) for judge in ("verify", "tests")}
         if any(row.values()):
             judges[fault["name"]] = row
     live = [fault for fault in faults if "harmless" not in fault]
@@ -287,7 +287,7 @@ def table(faults, path, name):
     both = [row for fault in live if all((row := judges.get(fault["name"], {"verify": None})).values())]
     if both:
         counts.append(f"one or both notice {sum(row['verify']['noticed'] or row['tests']['noticed'] for row in both)} of {len(both)}")
-    text = "\n".join([*lines, "", f"Of {len(live)} faults {len(live) - len(judges)} are not judged; {', '.join(counts)}.", ""])
+    text = "\n".join([*lines, "", f"Of {len(live)} faults {len(live) - len(judges)} are open; {', '.join(counts)}.", ""])
     if path:
         mark = f"<!-- written by tests/faults.py table --catalogue {name} -->\n\n"
         before, found, rest = pathlib.Path(path).read_text().partition(mark)

@@ -96,7 +96,7 @@ On 29 November 2026 these pictures were laid beside the 33 scenes and seven bann
 - Their interiors are richer: kitchens, bathrooms and staircases by artists, where ours is one room of boxes and books. Their gallery has hair, fur and cars. Etalon
   does not render hair.
 - Theirs has no soap film, no grating, no crossed polarisers, no fluorescent paint and no spectrum. These pictures are what Etalon is for.
-- The coatings, the titanium rods and the black light look like plates of a textbook. The bubble, the black light, the prism in smoke, the cloud and the wax are still noisy.
+- The coatings, the titanium rods and the black light look like plates of a textbook. The bubble, the black light, the prism in smoke, the cloud, the wax and the milk are still noisy.
 - No picture there states its error or its time.
 """
 

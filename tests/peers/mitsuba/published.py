@@ -36,6 +36,7 @@ POLARISED = "llvm_ad_spectral_polarized"
 POLARISE = re.compile(r"""type=["'](polarizer|retarder|circular|stokes|measured_polarized)["']""")
 PASSES = 16
 FINE_SKY = "with a fine sky"
+# Skies of more columns get 3 × 3 texels for each, not 5 × 5: memory.
 LARGE_SKY = 1024
 INCLUDED = re.compile(r"""<include\s+filename=["'](?:[^"']*[/\\])?([^"'/\\]+)["']""")
 OPEN = re.compile(r"\$(\w+)")
@@ -45,6 +46,7 @@ MOST_SQUARES = {4: 1.6, 8: 2.2}
 
 
 def keys_of_skies(params):
+    """Names of the parameters that are images of skies."""
     return [key for key in params.keys() if key.endswith("data") and f"{key[:-4]}to_world" in params and f"{key[:-4]}scale" in params]
 
 
@@ -74,12 +76,12 @@ def finer(texels):
     return between(places, upper, np.minimum(upper + 1, rows - 1))(wide)
 
 
-def by_mitsuba(mi, scene, given, width, spp, skies=()):
-    """Renders about as wide as this, with other texels for its skies: passes × rows × columns × channels."""
+def by_mitsuba(mi, scene, given, width, spp, texels_of_skies=()):
+    """Renders about as wide as this, with these texels for its skies: passes × rows × columns × channels."""
     loaded = mi.load_file(str(scene), **given)
     params = mi.traverse(loaded)
     # Names differ between variants where the file has none.
-    for key, texels in zip(keys_of_skies(params), skies):
+    for key, texels in zip(keys_of_skies(params), texels_of_skies):
         sky = mi.load_dict({"type": "envmap", "bitmap": mi.Bitmap(finer(texels).astype(np.float32))})
         params[key] = mi.traverse(sky)["data"]
     key = next(key for key in params.keys() if key.endswith("film.size"))
@@ -159,7 +161,9 @@ def compared(mi, scene, stem, args):
                 result["refused"] = lines[-12:]
                 break
         result[variant] = judge(channels(ours)[0], passes)
-    if "etalon" in result and "refused" not in result and not agrees(result) and (texels := skies(mi, scene, given)):
+    judged = "etalon" in result and "refused" not in result
+    # The texels are taken from the RGB variant.
+    if judged and not agrees(result) and not isinstance(result.get(VARIANTS[1]), str) and (texels := skies(mi, scene, given)):
         variant = POLARISED if is_polarised else VARIANTS[0]
         mi.set_variant(variant)
         result[FINE_SKY] = judge(channels(ours)[0], by_mitsuba(mi, scene, given, args.width, args.spp, texels))
