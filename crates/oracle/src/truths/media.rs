@@ -300,7 +300,7 @@ fn glow_of_a_lamp() -> Truth {
         .sees(5e-3)
 }
 
-/// As before, but all places of the ray lie beyond the lamp and scatter its light back, in fog that mostly scatters forward.
+/// A lamp beside the ray, in fog that mostly scatters forward. Nearly all places of the ray lie beyond the lamp, and scatter its light back.
 fn glow_in_forward_fog() -> Truth {
     let (scattering, extinction, g, h) = (0.4, 0.5, 0.6, 0.5_f64);
     let (from, to) = (-2.0, 0.1);
