@@ -197,7 +197,8 @@ fn how(prepared: &Prepared) -> Vec<(&'static str, String)> {
     };
     let paths = format!("{paths} ({}): {}", plan.path_loop.name.as_str(), plan.path_loop.because);
     let [first, last] = plan.wavelength_range_nm;
-    let depth = plan.max_depth.map_or("no limit".to_owned(), |depth| format!("at most {depth} path edges"));
+    let uncounted = if plan.count_panes { "" } else { " without those through panes" };
+    let depth = plan.max_depth.map_or("no limit".to_owned(), |depth| format!("at most {depth} path edges{uncounted}"));
     let roulette = if plan.roulette { "Russian roulette" } else { "no Russian roulette" };
     vec![
         ("kernel", plan.kernel.to_owned()),

@@ -44,7 +44,7 @@ impl<'a> Walk<'a, '_, '_> {
         if let Some(depth) = element.number("max_depth")?.filter(|depth| *depth >= 1.0) {
             self.builder.integrator.insert("max_depth".to_owned(), json!(depth.min(f64::from(u32::MAX)) as u32));
             if matches!(plugin, "volpath" | "volpathmis" | "prbvolpath") {
-                self.limit_without_panes = Some(element.place.clone());
+                self.limit_without_panes = true;
             }
         }
         if let Some(from) = element.number("rr_depth")?

@@ -118,7 +118,10 @@ impl Walk<'_, '_, '_> {
                 }
                 look
             }
-            "polarizer" | "retarder" | "circular" => self.sheet(element)?,
+            "polarizer" | "retarder" | "circular" => {
+                self.has_panes = true;
+                self.sheet(element)?
+            }
             "null" => Look::plain(json!({ "type": "black" }), 0.0),
             "blendbsdf" => {
                 let nested = element.nested("bsdf", self.ids)?;

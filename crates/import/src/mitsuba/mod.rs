@@ -45,7 +45,7 @@ pub(super) fn import(bytes: &[u8], parameters: &[(String, String)], builder: &mu
         measured: HashMap::new(),
         choices: Choices::default(),
         has_panes: false,
-        limit_without_panes: None,
+        limit_without_panes: false,
         open: Vec::new(),
         entered: 0,
     };
@@ -66,10 +66,10 @@ struct Walk<'a, 'w, 'b> {
     measured: HashMap<String, serde_json::Value>,
     /// What has been chosen of the material that is being read.
     choices: Choices,
-    /// Whether a pane of glass without thickness was read.
+    /// Whether a pane of glass without thickness, or a polarising sheet, was read.
     has_panes: bool,
-    /// Where a `max_depth` stands that does not count the ways through panes.
-    limit_without_panes: Option<String>,
+    /// Whether there is a `max_depth` that does not count the ways through panes.
+    limit_without_panes: bool,
     /// The elements that are being read, each within the one before.
     open: Vec<*const Element>,
     /// How many elements have been entered, each as often as it is.
@@ -123,10 +123,8 @@ impl<'a> Walk<'a, '_, '_> {
                 child.mark();
             }
         }
-        if let Some(place) = self.limit_without_panes.take().filter(|_| self.has_panes) {
-            let what = "in Mitsuba this integrator does not count the way through a thindielectric as an edge of the path. Here it counts, so \
-                        what is behind one is darker. With a larger max_depth it is less so";
-            self.builder.approximate(&place, what);
+        if self.limit_without_panes && self.has_panes {
+            self.builder.integrator.insert("count_panes".to_owned(), serde_json::json!(false));
         }
         root.list_unused(self.builder);
         Ok(())

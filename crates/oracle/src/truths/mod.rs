@@ -52,6 +52,7 @@ mod meters;
 mod motion;
 mod named;
 mod nested_media;
+mod panes;
 mod phase_matrices;
 mod polar_disks;
 mod polarised;
@@ -355,8 +356,9 @@ pub fn truths() -> Vec<Truth> {
     LIST.clone()
 }
 
-const GROUPS: [fn() -> Vec<Truth>; 52] = [
+const GROUPS: [fn() -> Vec<Truth>; 53] = [
     lamps_behind_glass::truths,
+    panes::truths,
     furnaces::truths,
     beckmann::truths,
     facets::truths,

@@ -18,6 +18,8 @@ crate::record! {
         sampler: Required<SamplerKind> = r#""sobol""#,
         /// Most path edges from the camera to a light: 1 is light seen directly, 2 adds one bounce; null is no limit.
         max_depth: Required<Nullable<Whole<1, { u32::MAX as u64 }>>> = "null",
+        /// Whether `max_depth` counts the way straight through a thin pane or a polarising sheet.
+        count_panes: Required<bool> = "true",
         /// Whether Russian roulette may end a path.
         roulette: Required<bool> = "true",
         /// How direct light is found.
@@ -118,6 +120,7 @@ pub(crate) fn integrator(form: &IntegratorForm, wavelength_range_nm: Option<[f64
             Nullable::Null => None,
             Nullable::Value(depth) => Some(depth.0 as u32),
         },
+        count_panes: form.count_panes?,
         roulette: form.roulette?,
         light_sampling: form.light_sampling?,
         light_selection: form.light_selection?,

@@ -13,6 +13,8 @@ pub struct Integrator {
     pub sampler: SamplerKind,
     /// Most path edges from the camera to a light: 1 is emission seen directly, 2 adds one bounce; `None` is no limit.
     pub max_depth: Option<u32>,
+    /// Whether `max_depth` counts the way straight through a thin pane or a polarising sheet as an edge.
+    pub count_panes: bool,
     /// Whether Russian roulette may end a path.
     pub roulette: bool,
     /// How direct light is found.

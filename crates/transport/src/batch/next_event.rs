@@ -223,7 +223,7 @@ impl<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Batch<'_, M, P, 
             let visible = path.unobstructed(world, vertex, &draw.sample);
             path.add_light(world, vertex, &draw, &next[lane], &visible, &mut ());
         }
-        if world.refracting_bodies.is_some() {
+        if world.refracting_bodies.is_some() || world.panes.is_some() {
             for lane in lanes(asks & !unoccluded) {
                 if let Some(draw) = self.lights.draw(lane) {
                     self.add_refracted_light(lane, &draw);

@@ -67,6 +67,7 @@ impl Blend {
             solid_angle: one.solid_angle || other.solid_angle,
             delta_reflection: one.delta_reflection || other.delta_reflection,
             delta_transmission: one.delta_transmission || other.delta_transmission,
+            passes_straight: one.passes_straight || other.passes_straight,
             dark: one.dark && other.dark,
             polarising_axis: one.polarising_axis || other.polarising_axis,
             takes_tangents: one.takes_tangents || other.takes_tangents,

@@ -287,6 +287,11 @@ impl Bsdf {
         matches!(self.untinted(), Self::Dielectric(_) | Self::ThinDielectric(_))
     }
 
+    /// Whether it is a pane: light goes straight on or is reflected, and nothing else.
+    pub(crate) fn is_pane(&self) -> bool {
+        matches!(self.untinted(), Self::ThinDielectric(_) | Self::PolarisingSheet(_))
+    }
+
     /// What it is without a tint.
     pub(crate) fn untinted(&self) -> &Self {
         match self {

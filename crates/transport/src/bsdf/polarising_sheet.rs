@@ -56,7 +56,7 @@ impl PolarisingSheet {
             Sheet::Polariser { transmittance, .. } => ("a polariser", transmittance.is_zero()),
             Sheet::Retarder { .. } => ("a retarder", false),
         };
-        Properties { dark, polarising_axis: true, ..Properties::sheet(name) }
+        Properties { dark, passes_straight: true, polarising_axis: true, ..Properties::sheet(name) }
     }
 
     pub(super) fn sample<const N: usize>(&self, lambda_nm: &Lanes<f64, N>, wo: Vec3<f64>) -> Option<BsdfSample<N>> {

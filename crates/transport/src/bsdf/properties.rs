@@ -11,6 +11,8 @@ pub struct Properties {
     pub delta_reflection: bool,
     /// It transmits light in a single direction (a delta).
     pub delta_transmission: bool,
+    /// Light passes it straight on, as if it were not there but for what it takes away: a pane.
+    pub passes_straight: bool,
     /// It is known to scatter no light at all.
     pub dark: bool,
     /// It may polarise unpolarised light by an axis of its own.
@@ -31,6 +33,7 @@ impl Properties {
         solid_angle: true,
         delta_reflection: false,
         delta_transmission: false,
+        passes_straight: false,
         dark: false,
         polarising_axis: false,
         takes_tangents: false,

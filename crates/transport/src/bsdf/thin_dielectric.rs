@@ -41,7 +41,7 @@ impl ThinDielectric {
 
     /// See [`Properties`]. Its index is relative to any medium.
     pub(super) fn properties() -> Properties {
-        Properties::pane("a thin pane")
+        Properties { passes_straight: true, ..Properties::pane("a thin pane") }
     }
 
     /// What the pane does to polarised light that meets it at the cosine `cos`.

@@ -1,5 +1,6 @@
 //! Where shadow rays may meet smooth interfaces that refract them.
 
+use crate::bsdf::Bsdf;
 use crate::surface::{ObjectSurface, Surfaces};
 use etalon_geometry::{Aabb, Geometry, PrimitiveId};
 use etalon_optics::Vec3;
@@ -19,7 +20,16 @@ pub(crate) struct RefractingBodies {
 impl RefractingBodies {
     /// Those of a scene; `None` if it has none.
     pub(crate) fn new(surfaces: &Surfaces, geometry: &Geometry) -> Option<Self> {
-        let refracts = |of: &ObjectSurface| surfaces.bsdfs[of.material].is_smooth_glass();
+        Self::those(surfaces, geometry, Bsdf::is_smooth_glass)
+    }
+
+    /// The panes of a scene alone; `None` if it has none.
+    pub(crate) fn panes(surfaces: &Surfaces, geometry: &Geometry) -> Option<Self> {
+        Self::those(surfaces, geometry, Bsdf::is_pane)
+    }
+
+    fn those(surfaces: &Surfaces, geometry: &Geometry, counts: impl Fn(&Bsdf) -> bool) -> Option<Self> {
+        let refracts = |of: &ObjectSurface| counts(&surfaces.bsdfs[of.material]);
         let is_body = |object: u32| surfaces.objects.get(object as usize).is_some_and(refracts);
         let mut bodies: Vec<(u32, Aabb)> = Vec::new();
         for (number, &object) in surfaces.object_of.first().into_iter().flatten().enumerate() {

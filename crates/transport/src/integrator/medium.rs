@@ -49,12 +49,12 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         // Sets from the other end than those of surfaces, which are what they are without media.
         let [coarse, fine, u_light, u_place] = sampler.set(u32::MAX - self.vertex);
         let lit = MediumWay { medium, coefficients, way, unit_m: participating.unit_m };
-        if world.lights_parts && self.vertex + 1 < world.max_depth {
+        if world.lights_parts && self.edges(2) <= world.max_depth {
             self.add_light_beside(world, &lit, ray, [u_light, u_place], counters, observer);
         }
         let mut beams = PassedBeams::default();
         if let Some(connections) = world.specular_connections.filter(|connections| connections.has_beams)
-            && self.vertex + 2 < world.max_depth
+            && self.has_edges_for_a_chain(world)
         {
             beams = self.passed_beams(world, connections, &lit, ray, sampler, counters);
             self.connect_in_beam(world, (&lit, &beams), ray, sampler, counters, observer);

@@ -30,6 +30,8 @@ pub(crate) struct Path<'a, M, P, const N: usize> {
     pub polarisation: P,
     /// Number of the vertex that it is at, or that its ray leads to.
     pub vertex: u32,
+    /// How many of its vertices are panes that it has passed and that do not count.
+    pub(super) uncounted: u32,
     /// ∏ η²: the part of beta that comes back when the path leaves the medium, which roulette must not count.
     pub eta_squared: f64,
     /// Product of guiding weights since the last diffuse vertex; excluded from Russian roulette.
@@ -168,6 +170,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             lanes: M::start(&Wavelengths::fixed([0.0; N])),
             polarisation: P::at_camera(x, y),
             vertex: 0,
+            uncounted: 0,
             eta_squared: 1.0,
             guiding: 1.0,
             step: Step::Unshared,
@@ -197,7 +200,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             self.lanes.follow(Lanes::ONE.hero_only());
         }
         self.polarisation = start.polarisation;
-        self.vertex = 0;
+        (self.vertex, self.uncounted) = (0, 0);
         self.eta_squared = 1.0;
         self.guiding = 1.0;
         self.step = Step::Unshared;
@@ -239,7 +242,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         observer: &mut impl Observer<N>,
     ) -> Arrival {
         if world.participating.is_some() && self.travel(world, ray, met.surface(), sampler, counters, observer) {
-            return match self.is_too_deep(world, counters, observer) {
+            return match self.is_too_deep(world, false, counters, observer) {
                 true => Arrival::Ended,
                 false => Arrival::Collides,
             };
@@ -257,23 +260,45 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         if world.masks && self.passes(world, vertex, sampler) {
             return Arrival::Passed;
         }
-        if self.is_too_deep(world, counters, observer) {
+        let may_pass = !world.counts_panes && world.tables.passes_straight(vertex.surface.material);
+        if self.is_too_deep(world, may_pass, counters, observer) {
             return Arrival::Ended;
         }
         vertex.prepare_scattering(world);
+        // Where only a pane that does not count goes on, a shadow ray would be one edge too many.
+        vertex.sees_lights &= !may_pass || self.edges(2) <= world.max_depth;
         if world.fluoresces {
             self.fluoresce(world, vertex, sampler, observer);
         }
         Arrival::Scatters
     }
 
-    /// Whether it ends here because it has as many vertices as it may have.
+    /// The edges of the path from the camera to vertex number `vertex + further - 1`, as far as they count.
     #[inline(always)]
-    fn is_too_deep(&self, world: &World<'a>, counters: &mut Counters, observer: &mut impl Observer<N>) -> bool {
-        if self.vertex + 1 < world.max_depth && self.vertex + 1 != MOST_VERTICES {
+    pub(super) fn edges(&self, further: u32) -> u32 {
+        self.vertex + further - self.uncounted
+    }
+
+    /// Whether a lamp can be found by way of one more mirror, interface or pane.
+    #[inline(always)]
+    pub(super) fn has_edges_for_a_chain(&self, world: &World<'a>) -> bool {
+        self.edges(if world.counts_panes { 3 } else { 2 }) <= world.max_depth
+    }
+
+    /// Whether it ends here because it has as many edges as it may have. `may_pass`: by a pane that does not count it may go on.
+    #[inline(always)]
+    fn is_too_deep(
+        &self,
+        world: &World<'a>,
+        may_pass: bool,
+        counters: &mut Counters,
+        observer: &mut impl Observer<N>,
+    ) -> bool {
+        let is_longest = self.vertex + 1 == MOST_VERTICES;
+        if !is_longest && (self.edges(1) < world.max_depth || may_pass) {
             return false;
         }
-        if self.vertex + 1 == MOST_VERTICES {
+        if is_longest {
             counters.record_cut(self.beta.max_lane() * self.lanes.weight());
         }
         observer.end(End::Depth);

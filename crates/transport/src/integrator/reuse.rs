@@ -60,7 +60,8 @@ enum Stage {
 /// Where a path leaves its first diffuse surface.
 #[derive(Clone, Copy, Debug)]
 struct Start<const N: usize> {
-    vertex: u32,
+    /// The edges of the path up to here, as far as they count.
+    edges: u32,
     point: SurfacePoint<f64>,
     /// The normal on the side that the path came from.
     normal: Vec3<f64>,
@@ -94,7 +95,7 @@ impl<const N: usize> ReusePath<N> {
     pub(crate) const NOTHING: Self = Self {
         stage: Stage::Begins,
         start: Start {
-            vertex: 0,
+            edges: 0,
             point: SurfacePoint {
                 position: Vec3::ZERO,
                 position_error: 0.0,
@@ -129,7 +130,7 @@ impl<const N: usize> ReusePath<N> {
             return;
         }
         let normal = toward(vertex.point.normal, vertex.wo);
-        self.start = Start { vertex: path.vertex, point: vertex.point, normal, beta: path.beta };
+        self.start = Start { edges: path.edges(1), point: vertex.point, normal, beta: path.beta };
         self.stage = Stage::Left;
         self.own = path.radiance;
         path.radiance = Lanes::ZERO;
@@ -227,7 +228,7 @@ pub(crate) fn redistribute<const N: usize>(
         for (i, mate) in paths.iter().enumerate() {
             q[i] = 0.0;
             // Light may take as many steps from there as are left to path j.
-            if !mate.has_start() || mate.start.vertex != path.start.vertex {
+            if !mate.has_start() || mate.start.edges != path.start.edges {
                 continue;
             }
             q[i] = facing(&mate.start, &path.target);

@@ -171,6 +171,9 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         self.polarisation.follow(*wo, wi, || vertex.scattering().mueller(&self.wavelengths.lambda_nm, *wo, wi, lobe));
         let mean_of_hero = self.lanes.follow(sample.lane_density);
         self.eta_squared *= sample.eta * sample.eta;
+        if !world.counts_panes && delta && wi == -*wo && world.tables.passes_straight(vertex.surface.material) {
+            self.uncounted += 1;
+        }
         if let Some(specular_objects) = world.specular_objects {
             self.light_traced = match self.light_traced {
                 LightTraced::Never => LightTraced::Never,
@@ -230,6 +233,11 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             self.beta /= survival;
         }
         self.vertex += 1;
+        if self.edges(1) > world.max_depth {
+            // It was to go on only by a pane that does not count.
+            observer.end(End::Depth);
+            return false;
+        }
         true
     }
 }

@@ -293,6 +293,8 @@ pub struct Plan {
     pub light_sampling: &'static str,
     /// Most path edges, if there is a limit.
     pub max_depth: Option<u32>,
+    /// Whether the ways straight through panes are among them.
+    pub count_panes: bool,
     /// Whether Russian roulette ends paths.
     pub roulette: bool,
     /// Whether the film holds S₁, S₂ and S₃.
@@ -407,6 +409,7 @@ impl Plan {
                 LightSampling::Bsdf => "bsdf",
             },
             max_depth: i.max_depth,
+            count_panes: i.count_panes,
             roulette: i.roulette,
             stokes: runs(EffectName::Polarisation) && (study.polarised || scene.film.stokes),
             effects,

@@ -57,6 +57,8 @@ pub struct Prepared {
     pub(crate) guided_targets: GuidedTargets,
     pub(crate) specular_connections: Option<SpecularConnections>,
     pub(crate) refracting_bodies: Option<RefractingBodies>,
+    /// The panes through which shadow rays go straight to lamps without area.
+    pub(crate) panes: Option<RefractingBodies>,
     /// Set by the trial before a picture.
     pub(crate) specular_objects: Option<SpecularObjects>,
     /// Whether a trial found no use in what goes through them.
@@ -208,6 +210,12 @@ pub(crate) fn build(scene: &Scene, study: &Study, earlier: Option<Prepared>) -> 
             LightTable::weighed(deltas, radius, scene.integrator.light_selection, worth)
         })
     });
+    let specular_connections = specular_connections.flatten();
+    // Places in beams are chosen for what is searched for from there.
+    let panes = specular_connections
+        .as_ref()
+        .filter(|connections| !connections.has_beams)
+        .and_then(|_| RefractingBodies::panes(&surfaces, &geometry));
     // A study may weigh shadow rays otherwise.
     let refracting_bodies = (plan.runs(EffectName::RefractedShadows)
         && scene.integrator.light_sampling == LightSampling::Mis)
@@ -241,7 +249,8 @@ pub(crate) fn build(scene: &Scene, study: &Study, earlier: Option<Prepared>) -> 
         filter: FilterSampler::new(&scene.film.filter),
         tables,
         guided_targets,
-        specular_connections: specular_connections.flatten(),
+        specular_connections,
+        panes,
         refracting_bodies: refracting_bodies.flatten(),
         specular_objects: None,
         shadow_rays_stop_at_glass: false,

@@ -47,6 +47,8 @@ pub(crate) struct ObjectRecord {
     bent: bool,
     /// Whether it reflects as Lambert's law says, around its own normals.
     diffuse: bool,
+    /// Whether no light passes it as if it were not there.
+    opaque: bool,
     /// The spectrum that it emits.
     pub emission: Slot,
 }
@@ -57,6 +59,10 @@ struct MaterialRecord {
     kind: BsdfKind,
     /// Whether shadow rays are of use.
     solid_angle_part: bool,
+    /// Whether light may pass it straight on.
+    passes_straight: bool,
+    /// Whether it is a pane, which passes all light straight on that it does not reflect.
+    pane: bool,
 }
 
 /// See the module.
@@ -89,6 +95,8 @@ impl ShadingTables {
         let material = |(bsdf, properties): (&Bsdf, &Properties)| MaterialRecord {
             kind: if polarised { BsdfKind::General } else { kind(bsdf, &mut spectra, &mut interfaces) },
             solid_angle_part: properties.solid_angle,
+            passes_straight: properties.passes_straight,
+            pane: bsdf.is_pane(),
         };
         let materials: Vec<_> = surfaces.bsdfs.iter().zip(&surfaces.properties).map(material).collect();
         let objects = surfaces.objects.iter().map(|object| record(object, surfaces, &mut spectra)).collect();
@@ -132,6 +140,18 @@ impl ShadingTables {
     pub(crate) fn has_solid_angle_part(&self, material: usize) -> bool {
         self.materials[material].solid_angle_part
     }
+
+    /// Whether an object is a pane and has or stands for this material.
+    #[inline(always)]
+    pub(crate) fn is_pane(&self, object: u32, material: usize) -> bool {
+        self.objects[object as usize].opaque && self.materials[material].pane
+    }
+
+    /// Whether light may pass a material straight on: a pane, or a blend with one.
+    #[inline(always)]
+    pub(crate) fn passes_straight(&self, material: usize) -> bool {
+        self.materials[material].passes_straight
+    }
 }
 
 fn kind(bsdf: &Bsdf, spectra: &mut Vec<PathSpectrum>, interfaces: &mut Vec<SmoothInterface>) -> BsdfKind {
@@ -159,6 +179,7 @@ fn record(object: &ObjectSurface, surfaces: &Surfaces, spectra: &mut Vec<PathSpe
         };
     ObjectRecord {
         bent,
+        opaque: object.opacity == 1.0 && object.opacity_image.is_none(),
         diffuse: !bent && matches!(surfaces.bsdfs[object.material], Bsdf::Lambert(_)),
         emission: object.emission.as_ref().and_then(|emission| slot(&emission.radiance, spectra)),
     }

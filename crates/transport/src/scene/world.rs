@@ -34,6 +34,8 @@ pub(crate) struct World<'a> {
     pub weigh_hits: bool,
     /// Most path edges from the camera to a light, at most [`MOST_VERTICES`](crate::integrator::MOST_VERTICES).
     pub max_depth: u32,
+    /// Whether the way straight through a pane counts as an edge.
+    pub counts_panes: bool,
     pub roulette: bool,
     /// Whether some surface gives light back at other wavelengths.
     pub fluoresces: bool,
@@ -42,6 +44,8 @@ pub(crate) struct World<'a> {
     pub plain_skies: bool,
     /// The lamps without area whose light is looked for by way of mirrors and smooth interfaces, if it is.
     pub specular_connections: Option<&'a SpecularConnections>,
+    /// The panes through which shadow rays go straight to such lamps, if they do.
+    pub panes: Option<&'a RefractingBodies>,
     /// The glass that shadow rays go through, if they do.
     pub refracting_bodies: Option<&'a RefractingBodies>,
     /// The objects whose light is followed from the lamps, if it is.

@@ -4,10 +4,10 @@ use std::sync::{Arc, LazyLock};
 
 use serde_json::{Value, json};
 
-use super::{at, by_wave_equation, coated, passing, reflecting, seen};
+use super::{at, by_wave_equation, coated, luminance, passing, reflecting, seen};
 use crate::laws::{CoatedInterface, FilmLayer, FilmWaves, SingleScattering, coated_ggx_albedo};
 use crate::truths::expectation::Expectation;
-use crate::truths::scene::{Scene, black, block, conductor, disk, glass, grey_hdr, level_square, solid};
+use crate::truths::scene::{Scene, black, block, conductor, disk, glass, grey_hdr, level_square, shown, solid};
 use crate::truths::stokes::{PARAMETERS, stokes_of};
 use crate::truths::{Claim, Truth};
 use crate::vector::{Vec3, scale};
@@ -146,7 +146,28 @@ pub(super) fn panes() -> Vec<Truth> {
             .or_else("the order of the layers turned", wrong[i])
             .sees(0.01)
     };
+    let below = Scene::light_meter()
+        .thing(json!({ "shape": level_square([0.0, 0.0, 0.5], 2000.0, true), "material": material.clone() }))
+        .directional_light([0.75_f64.sqrt(), 0.0, -cos], 1.0)
+        .spp(1 << 10);
+    let (bare, mean) = (CoatedInterface { layers: Vec::new(), ..face.clone() }, |face: &CoatedInterface| {
+        luminance(|nm| pane(face, nm, cos)[1])
+    });
+    let sun = Truth::new(
+        "sun-behind-a-coated-pane",
+        &below,
+        shown(cos * mean(&face)),
+        "(ρ/π) E cos θ ∫ T ȳ dλ / ∫ ȳ dλ: all orders of reflection between two coated faces, θ = 60°",
+    )
+    .because("Each wavelength of sunlight is dimmed by its own share, for s and for p. The pane is seen by no path: a shadow ray meets it.")
+    .confirmed("T²/(1 − R′²), by the wave equation", 1e-5, {
+        let face = face.clone();
+        move || shown(cos * luminance(|nm| closed(&face, nm, cos)[1]))
+    })
+    .or_else("no film", shown(cos * mean(&bare)))
+    .sees(2e-3);
     vec![
+        sun,
         truth("coated-pane", &reflecting(material.clone(), cos, true).band(at(nm)), 0),
         truth("coated-pane-seen-through", &passing(material, cos, false).band(at(nm)), 1),
     ]

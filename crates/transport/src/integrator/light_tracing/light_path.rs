@@ -66,14 +66,17 @@ pub(crate) fn trace_light_path<'a, M: WavelengthModel<N>, P: Polarisation<N>, co
         {
             put(connection);
         }
-        // Camera, next vertex, those before it, lamp.
-        if path.vertex + 2 >= world.max_depth.min(MOST_VERTICES) {
+        if path.vertex + 2 >= MOST_VERTICES {
             return;
         }
         let [u_lobe, u1, u2, u_roulette] = sampler.vertex_set(path.vertex, 0);
         let u = [u_lobe, u1, u2];
         let Some(direction) = sample_direction(tracer, &mut path, &vertex, (is_specular, u), &sampler) else { return };
         let Some(wi) = step(tracer, &mut path, &vertex, direction, (is_specular, u_lobe)) else { return };
+        // From the lamp to each vertex, to the next, and to the camera.
+        if path.edges(3) > world.max_depth {
+            return;
+        }
         if !path.survives(world, 1.0, u_roulette, &mut ()) {
             return;
         }

@@ -52,6 +52,8 @@ pub(super) struct Link {
     pub position: Vec3<f64>,
     /// Unit vector.
     pub direction: Vec3<f64>,
+    /// Whether it is a pane that the chain passes, which shadow rays do too.
+    pub passes_pane: bool,
 }
 
 impl<'c, 'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Chain<'c, 'a, V, M, P, N> {
@@ -69,8 +71,6 @@ impl<'c, 'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: 
             left /= GOES_ON;
             most += 1;
         }
-        // Edges of the path: to this vertex, to each of the chain, and to the lamp.
-        let most = most.min(world.max_depth.saturating_sub(path.vertex + 2));
         Self { world, vertex, path, scout: Scout::of(path), choice: LobeChoice { numbers, refracts: false }, most }
     }
 
@@ -81,8 +81,13 @@ impl<'c, 'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: 
         for number in 0..self.most {
             let Some(next) = self.scout.next(self.world, &self.choice, &ray, number, counters) else { return };
             let (surface, position) = (next.vertex.point.surface, next.vertex.point.position);
+            let is_pane = self.world.panes.is_some()
+                && self.world.tables.is_pane(next.vertex.surface.object, next.vertex.surface.material);
+            let before = ray.direction;
             ray = self.scout.go_on(self.world, next);
-            if !each(&Link { surface, position, direction: ray.direction }) {
+            let passes_pane = is_pane && ray.direction == before;
+            if self.is_too_long(number + 1) || !each(&Link { surface, position, direction: ray.direction, passes_pane })
+            {
                 return;
             }
         }
@@ -96,8 +101,12 @@ impl<'c, 'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: 
             // Mostly there are two, which the chain meets in the other order.
             let number = if count <= 2 { 2 - count } else { count - 1 };
             let Some(next) = self.scout.next(self.world, &self.choice, &ray, number, counters) else { break };
-            last = Some((next.vertex.point.position, count));
+            let position = next.vertex.point.position;
             ray = self.scout.go_on(self.world, next);
+            if self.is_too_long(count) {
+                break;
+            }
+            last = Some((position, count));
         }
         last
     }
@@ -110,9 +119,17 @@ impl<'c, 'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: 
         for number in 0..self.most {
             let Some(next) = self.scout.next(self.world, &choice, &ray, number, counters) else { break };
             ray = self.scout.go_on(self.world, next);
+            if self.is_too_long(number + 1) {
+                break;
+            }
             passed = Some(ray);
         }
         passed
+    }
+
+    /// Whether the path has more edges than it may have, if the chain has this many vertices: to this vertex, to each of the chain, and to the lamp.
+    fn is_too_long(&self, vertices: u32) -> bool {
+        self.scout.path.edges(2 + vertices) > self.world.max_depth
     }
 
     /// The scout at the beginning of a ray of a lamp.

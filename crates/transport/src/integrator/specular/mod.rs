@@ -22,6 +22,7 @@ mod chain;
 mod passed_beam;
 mod refracted_shadow;
 mod solve;
+mod through_panes;
 mod walker;
 
 use super::Path;
@@ -74,14 +75,20 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         counters: &mut Counters,
         observer: &mut impl Observer<N>,
     ) {
-        let finds_sources = |specular_objects: &SpecularObjects| specular_objects.finds_sources;
-        if let Some(connections) = world.specular_connections
-            && !(world.specular_objects.is_some_and(finds_sources) && self.is_light_traced_after_specular(world))
-        {
+        if let Some(connections) = self.connections(world) {
             let first = sampler.connection_set(self.vertex);
             let numbers = Numbers { first, further: sampler.connection_numbers(self.vertex) };
             self.connect_by(world, connections, vertex, numbers, counters, observer);
         }
+    }
+
+    /// The lamps that are searched for, if light paths do not bring their light.
+    #[inline(always)]
+    fn connections(&self, world: &World<'a>) -> Option<&'a SpecularConnections> {
+        let finds_sources = |specular_objects: &SpecularObjects| specular_objects.finds_sources;
+        let is_brought =
+            world.specular_objects.is_some_and(finds_sources) && self.is_light_traced_after_specular(world);
+        world.specular_connections.filter(|_| !is_brought)
     }
 
     /// Tries one connection by some numbers.
@@ -109,8 +116,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         counters: &mut Counters,
         observer: &mut impl Observer<N>,
     ) {
-        // A lamp, a mirror and this vertex take two more edges.
-        if self.vertex + 2 >= world.max_depth {
+        if !self.has_edges_for_a_chain(world) {
             return;
         }
         let [u_made, u_length, u_kept, _] = numbers.further.set(CONNECTION_SET);

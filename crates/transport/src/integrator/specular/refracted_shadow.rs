@@ -38,12 +38,12 @@ const FAINT: f64 = 0.25;
 /// The number of the set before those that decide this.
 const SHADOW_SETS: u64 = 1 << 43;
 
-/// What a shadow ray brings through smooth interfaces.
-struct ShadowPassed<const N: usize> {
+/// What a shadow ray brings through smooth interfaces and panes.
+pub(super) struct ShadowPassed<const N: usize> {
     /// S₀ of radiance times throughput.
-    light: Lanes<f64, N>,
+    pub light: Lanes<f64, N>,
     /// S₁, S₂ and S₃, where polarisation is followed.
-    stokes: Option<[Lanes<f64, N>; 3]>,
+    pub stokes: Option<[Lanes<f64, N>; 3]>,
     /// How many interfaces it went through.
     interfaces: u32,
     /// The probability with which the walk would have passed them.
@@ -72,7 +72,9 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         counters: &mut Counters,
         observer: &mut impl Observer<N>,
     ) {
-        if !self.is_light_traced_after_specular(world) && may_meet_glass(world, vertex, draw) {
+        if matches!(draw.sample.density, Density::Delta) {
+            self.add_light_through_panes(world, vertex, draw, counters, observer);
+        } else if !self.is_light_traced_after_specular(world) && may_meet_glass(world, vertex, draw) {
             self.follow_shadow_ray(world, vertex, draw, sampler, counters, observer);
         }
     }
@@ -129,8 +131,6 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         mut goes_on: impl FnMut(Lanes<f64, N>) -> f64,
         counters: &mut Counters,
     ) -> Option<ShadowPassed<N>> {
-        // Edges of the path: to this vertex, to each interface, and to the lamp.
-        let most = MOST_INTERFACES.min(world.max_depth.saturating_sub(self.vertex + 2));
         let mut walker = Walker::like(self);
         let mut ray = walker.leave(self, world, vertex, wi);
         let walker = &mut walker.path;
@@ -174,7 +174,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
                     walker.walk.pass(&met, &mut walker.stack);
                     continue;
                 }
-                1.0 if interfaces < most && !met.surface.shines() => {}
+                1.0 if interfaces < MOST_INTERFACES && !met.surface.shines() => {}
                 _ => return None,
             }
             met.prepare_scattering(world);
@@ -197,6 +197,10 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             walker.beta *= transmitted;
             probability *= transmitted;
             interfaces += 1;
+            // To this vertex, to each interface, and to the lamp.
+            if walker.edges(2 + interfaces) > world.max_depth {
+                return None;
+            }
             (ray, start) = (next, next.origin);
         }
         None
@@ -231,7 +235,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
 
 impl<const N: usize> ShadowPassed<N> {
     /// What a walker brings that has come through.
-    fn by<M: WavelengthModel<N>, P: Polarisation<N>>(
+    pub(super) fn by<M: WavelengthModel<N>, P: Polarisation<N>>(
         walker: &Path<'_, M, P, N>,
         radiance: Lanes<f64, N>,
         interfaces: u32,

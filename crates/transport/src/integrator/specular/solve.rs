@@ -70,6 +70,8 @@ struct End {
     position: Vec3<f64>,
     direction: Vec3<f64>,
     surfaces: u64,
+    /// Whether the chain has only passed panes: its light comes by a shadow ray.
+    is_straight: bool,
 }
 
 impl End {
@@ -146,7 +148,7 @@ impl<'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: usiz
     pub(super) fn approach(&mut self, seed: &Seed, source: &Source, counters: &mut Counters) -> Option<Approached> {
         let vertices = self.vertices(seed, source, counters)?;
         let mut wi = seed.direction;
-        let mut end = self.end(wi, vertices, counters)?;
+        let mut end = self.end(wi, vertices, counters).filter(|end| !end.is_straight)?;
         for _ in 0..MOST_DERIVATIVES {
             let (at, toward) = (Frame::from_normal(wi), Frame::from_normal(end.direction));
             let mut miss = end.miss_along(source, &toward);
@@ -155,7 +157,7 @@ impl<'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: usiz
             loop {
                 let step = newton_step(&derivative, miss)?;
                 if length(step) < LAST_STEP {
-                    return Some(Approached { wi, end, vertices });
+                    return (!end.is_straight).then_some(Approached { wi, end, vertices });
                 }
                 let before = length(miss);
                 let mut part = (LONGEST_STEP / length(step)).min(1.0);
@@ -229,7 +231,7 @@ impl<'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: usiz
             {
                 *chance *= BLOCKED;
             }
-            let end = End { position: link.position, direction: link.direction, surfaces: 0 };
+            let end = End { position: link.position, direction: link.direction, surfaces: 0, is_straight: false };
             before = Some((link.position, source.distance(link.position)));
             chances.push(1.0 / (end.miss(source).length_squared() + NEAR));
             true
@@ -245,12 +247,13 @@ impl<'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: usiz
 
     /// Where the chain in a direction is after some vertices.
     fn end(&mut self, wi: Vec3<f64>, vertices: u32, counters: &mut Counters) -> Option<End> {
-        let (mut count, mut surfaces, mut end) = (0, 0, None);
+        let (mut count, mut surfaces, mut is_straight, mut end) = (0, 0, true, None);
         self.follow(wi, counters, |link| {
             count += 1;
             surfaces = with(surfaces, link.surface);
+            is_straight &= link.passes_pane;
             if count == vertices {
-                end = Some(End { position: link.position, direction: link.direction, surfaces });
+                end = Some(End { position: link.position, direction: link.direction, surfaces, is_straight });
             }
             count < vertices
         });

@@ -23,6 +23,8 @@ pub(super) struct Walker<'a, M, P, const N: usize> {
     pub path: Path<'a, M, P, N>,
     /// Whether it asks what media let through. Where chains lead does not depend on that.
     asks_media: bool,
+    /// [`Path::uncounted`] where chains begin.
+    uncounted: u32,
 }
 
 /// Finds where chains lead: with the hero alone, which decides that, and without polarisation.
@@ -53,7 +55,7 @@ impl<'a> Scout<'a> {
         scout.wavelengths = Wavelengths::fixed([path.hero_nm()]);
         scout.vertex = path.vertex;
         scout.spectra.forget(&scout.wavelengths.lambda_nm, false);
-        Self { path: scout, asks_media: false }
+        Self { path: scout, asks_media: false, uncounted: path.uncounted }
     }
 }
 
@@ -64,7 +66,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Walker<'a, M
         walker.wavelengths = path.wavelengths;
         walker.vertex = path.vertex;
         walker.spectra = path.spectra.clone();
-        Self { path: walker, asks_media: true }
+        Self { path: walker, asks_media: true, uncounted: path.uncounted }
     }
 
     /// At the vertex of the path that it is like, with what the path has there and what the vertex does to polarisation; the ray in a direction.
@@ -85,6 +87,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Walker<'a, M
     /// Back at the beginning of the chain, in these media if they are followed.
     pub(super) fn begin(&mut self, world: &World<'a>, stack: Option<MediumStack<'a>>) {
         self.path.leave_ray(world);
+        self.path.uncounted = self.uncounted;
         if let Some(stack) = stack {
             self.path.stack = stack;
         }
@@ -99,7 +102,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Walker<'a, M
         number: u32,
         counters: &mut Counters,
     ) -> Option<ChainVertex<'a, N>> {
-        let Self { path: walker, asks_media } = self;
+        let Self { path: walker, asks_media, .. } = self;
         let [mut u_lobe, u1, u2, mut u_mask] = choice.numbers.set(u64::from(number));
         if choice.refracts {
             u_lobe = 1.0_f64.next_down();

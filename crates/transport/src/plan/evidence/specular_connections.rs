@@ -26,7 +26,7 @@ const MOST_ASKED: usize = 1 << 22;
 pub(super) fn specular_connections(scene: &Scene) -> Result<String, String> {
     let none = |why: &str| Err(why.to_owned());
     // A meter's plate stands for the other surface.
-    let fewest = FEWEST_EDGES - u32::from(!scene.receivers.is_empty());
+    let fewest = FEWEST_EDGES - u32::from(!scene.receivers.is_empty()) - u32::from(!scene.integrator.count_panes);
     if scene.integrator.max_depth.is_some_and(|depth| depth < fewest) {
         return none("no path is long enough for a lamp, a mirror or glass, and another surface");
     }

@@ -1,0 +1,134 @@
+//! Panes that no limit on edges counts: light comes straight through any number of them, and what they reflect is one edge more.
+
+use std::f64::consts::PI;
+
+use serde_json::{Value, json};
+
+use super::scene::{Scene, black, disk, lambert, level_square, shown};
+use super::{Claim, Truth};
+use crate::laws::fresnel_exact;
+use crate::quadrature::interval;
+
+const INDEX: f64 = 1.5;
+/// Far enough that no light comes by way of an edge.
+const FAR_M: f64 = 2000.0;
+
+pub(super) fn truths() -> Vec<Truth> {
+    vec![
+        three_panes_in_a_row(),
+        disk_lamp(),
+        lamp_at_a_point("never").claims(Claim::SpecularConnections),
+        lamp_at_a_point("always").claims(Claim::SpecularConnections),
+    ]
+}
+
+fn pane(height_m: f64, half_m: f64) -> Value {
+    let material = json!({ "type": "thin-dielectric", "index": INDEX });
+    json!({ "shape": level_square([0.0, 0.0, height_m], half_m, false), "material": material })
+}
+
+/// A scene in which paths have at most so many edges, but for those through panes.
+fn limited(scene: Scene, edges: u32) -> Scene {
+    scene.depth(edges).set("integrator", "count_panes", json!(false))
+}
+
+/// What a pane lets pass of unpolarised light: all reflections between its faces included.
+fn passes(cosine: f64) -> f64 {
+    let powers = fresnel_exact(cosine, INDEX);
+    let through = |r: f64| (1.0 - r) / (1.0 + r);
+    0.5 * (through(powers.r_s) + through(powers.r_p))
+}
+
+/// The same, added up beam by beam.
+fn passes_beam_by_beam(cosine: f64) -> f64 {
+    let powers = fresnel_exact(cosine, INDEX);
+    let through = |r: f64| (0..60).map(|k| (1.0 - r).powi(2) * r.powi(2 * k)).sum::<f64>();
+    0.5 * (through(powers.r_s) + through(powers.r_p))
+}
+
+/// A lamp below three panes, and a brighter one above, which the panes would reflect.
+fn three_panes_in_a_row() -> Truth {
+    let scene = Scene::orthographic([0.0, 0.0, 1.0], [0.0; 3], 0.1)
+        .thing(pane(0.3, FAR_M))
+        .thing(pane(0.2, FAR_M))
+        .thing(pane(0.1, FAR_M))
+        .lamp(disk([0.0; 3], [0.0, 0.0, 1.0], 0.5), black(), 1.0, "front")
+        .lamp(disk([0.0, 0.0, 2.0], [0.0, 0.0, -1.0], 0.5), black(), 3.0, "front")
+        .film(16, 16)
+        .spp(1024);
+    let reflectance = fresnel_exact(1.0, INDEX).reflectance();
+    let once = (1.0 - reflectance) / (1.0 + reflectance);
+    Truth::new("three-panes-that-no-limit-counts", &limited(scene, 1), once.powi(3), "((1 − R)/(1 + R))³")
+        .because(
+            "One edge is left: straight through the panes to the lamp. What two panes reflect to and fro has three.",
+        )
+        .confirmed("the passes to and fro within each pane, one by one", 1e-12, || passes_beam_by_beam(1.0).powi(3))
+        .or_else("panes counted", 0.0)
+        .or_else("what panes reflect to and fro as well", (1.0 - reflectance) / (1.0 + 5.0 * reflectance))
+        .or_else("the lamp above reflected once by each pane", {
+            let reflected = 1.0 - once;
+            once.powi(3) + 3.0 * reflected * (1.0 + once.powi(2) + once.powi(4))
+        })
+        .sees(2e-3)
+}
+
+/// A lamp with an area, found by shadow rays through the pane and by chance.
+fn disk_lamp() -> Truth {
+    const LAMP_M: f64 = 1.5;
+    const RADIUS_M: f64 = 1.2;
+    let scene = Scene::light_meter()
+        .thing(pane(0.5, FAR_M))
+        .lamp(disk([0.0, 0.0, LAMP_M], [0.0, 0.0, -1.0], RADIUS_M), black(), 1.0, "front")
+        .spp(1 << 10);
+    let irradiance = |transmittance: fn(f64) -> f64| {
+        let of_ring = |theta: f64| transmittance(theta.cos()) * theta.cos() * theta.sin();
+        2.0 * PI * interval(of_ring, 0.0, (RADIUS_M / LAMP_M).atan(), 1e-12).value
+    };
+    Truth::new(
+        "disk-lamp-behind-a-pane-that-no-limit-counts",
+        &limited(scene, 2),
+        shown(irradiance(passes)),
+        "(ρ/π) 2πL ∫ ½Σ (1 − R)/(1 + R) cos θ sin θ dθ",
+    )
+    .because("Two edges, to the plate and straight on to the lamp: the pane between them is none.")
+    .confirmed("the passes to and fro within the pane, one by one", 1e-9, move || {
+        shown(irradiance(passes_beam_by_beam))
+    })
+    .or_else("panes counted", 0.0)
+    .or_else("no pane", shown(irradiance(|_| 1.0)))
+    .sees(5e-3)
+}
+
+/// A lamp without area, searched for through the pane, or found from the lamp.
+fn lamp_at_a_point(light_paths: &str) -> Truth {
+    const LAMP_M: f64 = 0.9;
+    const HALF_M: f64 = 0.15;
+    let scene = Scene::orthographic([0.0, 0.0, 0.4], [0.0; 3], 2.0 * HALF_M)
+        .up([0.0, 1.0, 0.0])
+        .object(level_square([0.0; 3], 0.2, true), lambert(0.5))
+        .thing(pane(0.6, HALF_M))
+        .point_light([0.0, 0.0, LAMP_M], 1.0)
+        .set("integrator", "light_tracing", json!(light_paths))
+        .film(16, 16)
+        .spp(256);
+    // The mean of T I h/r³ over the square.
+    let mean = |transmittance: fn(f64) -> f64| {
+        let at = |x: f64, y: f64| {
+            let distance = (x * x + y * y + LAMP_M * LAMP_M).sqrt();
+            transmittance(LAMP_M / distance) * LAMP_M / distance.powi(3)
+        };
+        let row = |x: f64| interval(|y| at(x, y), 0.0, HALF_M, 1e-12).value;
+        interval(row, 0.0, HALF_M, 1e-12).value / (HALF_M * HALF_M)
+    };
+    Truth::new(
+        format!("lamp-at-a-point-behind-a-pane-that-no-limit-counts-with-light-paths-{light_paths}"),
+        &limited(scene, 2),
+        shown(mean(passes)),
+        "(ρ/π) ∫ ½Σ (1 − R)/(1 + R) I h/r³ dA / A",
+    )
+    .because("Two edges, to the floor and straight on to the lamp: the pane between them is none. What floor and pane send to each other has more.")
+    .confirmed("the passes to and fro within the pane, one by one", 1e-9, move || shown(mean(passes_beam_by_beam)))
+    .or_else("panes counted", 0.0)
+    .or_else("no pane", shown(mean(|_| 1.0)))
+    .sees(5e-3)
+}
