@@ -27,6 +27,8 @@ const MAX_LEFT_OUT: usize = 1000;
 /// Most of them that are named where there is no scene without them.
 const MOST_NAMED: usize = 5;
 
+const WITHOUT_AREA: &str = "none of its triangles has an area: it is left out";
+
 /// How something that is listed is introduced.
 fn how(loss: Loss) -> &'static str {
     match loss {
@@ -56,6 +58,8 @@ pub(crate) struct Builder<'a> {
     pub(crate) medium: Option<Value>,
     pub(crate) integrator: Map<String, Value>,
     pub(crate) files: Vec<NamedFile>,
+    /// The names of those that are meshes of which no triangle has an area.
+    flat_meshes: HashSet<String>,
     /// Names of files by what they were made from.
     pub(crate) known: HashMap<String, Option<String>>,
     /// Images by their file and how its numbers stand: what is known of each, or why there is none.
@@ -123,6 +127,7 @@ impl<'a> Builder<'a> {
             medium: None,
             integrator: Map::new(),
             files: Vec::new(),
+            flat_meshes: HashSet::new(),
             known: HashMap::new(),
             images: HashMap::new(),
             budget: Budget::default(),
@@ -187,6 +192,10 @@ impl<'a> Builder<'a> {
         (emission, detail): (Option<Value>, &Map<String, Value>),
         map: &DAffine3,
     ) {
+        if self.flat_meshes.contains(file) {
+            self.leave_out(name, WITHOUT_AREA);
+            return;
+        }
         let mut object = json!({ "name": name, "shape": { "type": "mesh", "file": file }, "material": material });
         for (key, value) in detail {
             object[key] = value.clone();
@@ -215,6 +224,10 @@ impl<'a> Builder<'a> {
         let determinant = placed.map.matrix3.determinant();
         if determinant == 0.0 || !determinant.is_finite() {
             self.leave_out(place, "it is flattened by its transform, and left out");
+            return Ok(());
+        }
+        if placed.shape["file"].as_str().is_some_and(|file| self.flat_meshes.contains(file)) {
+            self.leave_out(place, WITHOUT_AREA);
             return Ok(());
         }
         let mut material = placed.material.clone();

@@ -3,7 +3,7 @@
 use std::io::Cursor;
 use std::path::Path;
 
-use etalon_scene::mesh::write_ply;
+use etalon_scene::mesh::{has_area, write_ply};
 use etalon_scene::{Encoding, Image, Mesh, NamedFile};
 use image::{ImageBuffer, ImageFormat, Rgb};
 
@@ -36,7 +36,11 @@ impl Builder<'_> {
         let mut bytes = Vec::with_capacity(40 * mesh.vertices.len() + 13 * mesh.triangles.len());
         // Writing to memory cannot fail.
         let _ = write_ply(mesh, &mut bytes);
-        self.add_file("mesh", "ply", bytes)
+        let file = self.add_file("mesh", "ply", bytes);
+        if !mesh.triangles.iter().any(|triangle| has_area(mesh, triangle)) {
+            self.flat_meshes.insert(file.clone());
+        }
+        file
     }
 
     /// The bytes of a file that the model names.

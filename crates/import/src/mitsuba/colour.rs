@@ -1,9 +1,9 @@
 //! Spectra, colours and textures of Mitsuba.
 
-use etalon_optics::colour::rec709_luminance;
+use etalon_optics::colour::{rec709_luminance, srgb_decode};
 use std::path::Path;
 
-use etalon_scene::{Encoding, UvMap};
+use etalon_scene::{Encoding, UvMap, shortened};
 use serde_json::{Value, json};
 
 use super::Walk;
@@ -94,13 +94,18 @@ impl Walk<'_, '_, '_> {
                 let target = self.ids.of(element)?;
                 target.mark();
                 let value = match target.tag.as_str() {
-                    "texture" | "spectrum" | "rgb" => self.colour_of(target, of)?,
+                    "texture" | "spectrum" | "rgb" | "srgb" => self.colour_of(target, of)?,
                     other => return Err(format!("{place}: a <{other}> stands where a colour should")),
                 };
                 self.builder.spend(&value, place)?;
                 return Ok(value);
             }
             "rgb" => self.rgb(element.attribute("value").unwrap_or(""), place, of)?,
+            "srgb" => {
+                let text = element.attribute("value").unwrap_or("");
+                let encoded = encoded(text).map_err(|why| format!("{place}: {why}"))?;
+                self.channels(encoded.map(srgb_decode), place, of)?
+            }
             "float" | "integer" => {
                 let text = element.attribute("value").unwrap_or("");
                 let value: f64 = text.trim().parse().map_err(|_| format!("{place}: \"{text}\" is not a number"))?;
@@ -115,11 +120,11 @@ impl Walk<'_, '_, '_> {
     }
 
     pub(super) fn rgb(&mut self, text: &str, place: &str, of: Of) -> Result<Value, String> {
-        let rgb = match numbers(text).map_err(|why| format!("{place}: {why}"))?[..] {
-            [grey] => [grey; 3],
-            [r, g, b] => [r, g, b],
-            _ => return Err(format!("{place}: \"{text}\" is not a colour")),
-        };
+        let rgb = three(text).map_err(|why| format!("{place}: {why}"))?;
+        self.channels(rgb, place, of)
+    }
+
+    fn channels(&mut self, rgb: [f64; 3], place: &str, of: Of) -> Result<Value, String> {
         Ok(match of {
             Of::Emission | Of::Shining => {
                 if rgb.iter().any(|v| *v < 0.0) {
@@ -157,6 +162,10 @@ impl Walk<'_, '_, '_> {
                 let pairs = text.replace(':', " ");
                 let list = numbers(&pairs).map_err(|why| format!("{place}: {why}"))?;
                 return self.table(&list, place, of);
+            }
+            // In version 0.x, three values are three channels.
+            if text.contains(',') {
+                return self.rgb(text, place, of);
             }
             let value: f64 = text.trim().parse().map_err(|_| format!("{place}: \"{text}\" is not a number"))?;
             return Ok(self.constant(value, place, of));
@@ -357,4 +366,22 @@ fn to_uv(texture: &Element) -> Result<UvMap, String> {
 /// The kind of a file, by its name.
 pub(super) fn kind(name: &str) -> String {
     extension(Path::new(name))
+}
+
+/// Three channels, or one for all.
+pub(super) fn three(text: &str) -> Result<[f64; 3], String> {
+    match numbers(text)?[..] {
+        [grey] => Ok([grey; 3]),
+        [r, g, b] => Ok([r, g, b]),
+        _ => Err(format!("\"{}\" is not a colour", shortened(text.to_owned()))),
+    }
+}
+
+/// Channels after the curve of sRGB, as numbers or as #rrggbb.
+fn encoded(text: &str) -> Result<[f64; 3], String> {
+    let Some(digits) = text.trim().strip_prefix('#') else { return three(text) };
+    match u32::from_str_radix(digits, 16) {
+        Ok(bits) if digits.len() == 6 => Ok([16, 8, 0].map(|shift| f64::from(bits >> shift & 255) / 255.0)),
+        _ => Err(format!("\"{}\" is not a colour", shortened(text.to_owned()))),
+    }
 }

@@ -5,6 +5,7 @@ use std::collections::{HashMap, HashSet};
 
 use roxmltree::{Document, ParsingOptions};
 
+use super::older;
 use crate::Builder;
 
 /// Deepest nesting of elements, and of files that include files.
@@ -23,7 +24,7 @@ const MAX_FOLDERS: usize = 32;
 #[derive(Debug)]
 pub(super) struct Element {
     pub tag: String,
-    attributes: HashMap<String, String>,
+    pub(super) attributes: HashMap<String, String>,
     pub children: Vec<Element>,
     /// The line, and the file if it is not the scene itself.
     pub place: String,
@@ -34,6 +35,16 @@ pub(super) struct Element {
 impl Element {
     pub(super) fn attribute(&self, key: &str) -> Option<&str> {
         self.attributes.get(key).map(String::as_str)
+    }
+
+    pub(super) fn set(&mut self, key: &str, value: String) {
+        self.attributes.insert(key.to_owned(), value);
+    }
+
+    /// One that stands for another at its place.
+    pub(super) fn made(tag: &str, attributes: &[(&str, String)], children: Vec<Self>, place: &str) -> Self {
+        let attributes = attributes.iter().map(|(key, value)| ((*key).to_owned(), value.clone())).collect();
+        Self { tag: tag.to_owned(), attributes, children, place: place.to_owned(), used: Cell::new(false) }
     }
 
     /// The `type`: which plugin it is.
@@ -231,7 +242,10 @@ impl Reading<'_> {
         let options = ParsingOptions { nodes_limit: 2 * MAX_ELEMENTS as u32, ..ParsingOptions::default() };
         let document = Document::parse_with_options(text, options).map_err(|error| format!("{of}{error}"))?;
         let lines = Lines::new(text);
-        self.element(document.root_element(), &of, &lines, depth)
+        let mut read = self.element(document.root_element(), &of, &lines, depth)?;
+        let is_old = |root: &&mut Element| root.attribute("version").is_some_and(|version| version.starts_with("0."));
+        read.iter_mut().filter(is_old).for_each(older::upgrade);
+        Ok(read)
     }
 
     /// The element, or those of the file that it includes, or nothing for one that only sets a parameter.

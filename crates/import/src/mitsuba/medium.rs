@@ -4,10 +4,11 @@ use glam::DAffine3;
 use serde_json::{Value, json};
 
 use super::Walk;
-use super::colour::{Of, times};
+use super::colour::{Of, three, times};
 use super::element::Element;
 use crate::matrix::steps;
 use crate::medium::{blended, in_unit_box, means, shares, vol, without_colour};
+use crate::{coefficient, reflectance};
 
 /// What a grid says of a medium.
 struct Grid {
@@ -45,13 +46,21 @@ impl<'a> Walk<'a, '_, '_> {
                 None => made["albedo"] = self.uniform(stated, Of::Reflectance)?,
             },
         }
+        let parts = self.parts_of_extinction(element)?;
         made["extinction_per_m"] = match element.plugin() {
+            "homogeneous" if parts.is_some() => {
+                let (albedo, extinction) = parts.unwrap_or_default();
+                made["albedo"] = reflectance(albedo);
+                coefficient(extinction.map(|v| v * scale))
+            }
             "homogeneous" => match element.property("sigma_t") {
                 None => json!(scale),
                 Some(stated) => times(self.uniform(stated, Of::Coefficient)?, scale),
             },
             "heterogeneous" => {
-                let stated = element.property("sigma_t").ok_or_else(|| format!("{place}: it has no \"sigma_t\""))?;
+                // In version 0.x the extinction is the density times the scale.
+                let stated = element.property("sigma_t").or_else(|| element.property("density"));
+                let stated = stated.ok_or_else(|| format!("{place}: it has no \"sigma_t\""))?;
                 match self.grid(stated)? {
                     Some(Grid { density, extinction }) => {
                         made["density"] = density;
@@ -74,6 +83,27 @@ impl<'a> Walk<'a, '_, '_> {
         element.property("majorant_resolution_factor");
         element.list_unused(self.builder);
         Ok(made)
+    }
+
+    /// What version 0.x states by absorption and scattering: the albedo and the extinction of three channels.
+    fn parts_of_extinction(&mut self, element: &'a Element) -> Result<Option<([f64; 3], [f64; 3])>, String> {
+        let read = |name: &str| -> Result<Option<[f64; 3]>, String> {
+            let Some(stated) = element.property(name) else { return Ok(None) };
+            let text = stated.attribute("value").unwrap_or("");
+            let channels = three(text).map_err(|why| format!("{}: {why}", stated.place))?;
+            match channels.iter().all(|v| *v >= 0.0) {
+                true => Ok(Some(channels)),
+                false => Err(format!("{}: a coefficient is negative", stated.place)),
+            }
+        };
+        let (absorbed, scattered) = (read("sigma_a")?, read("sigma_s")?);
+        if absorbed.is_none() && scattered.is_none() {
+            return Ok(None);
+        }
+        let [absorbed, scattered] = [absorbed, scattered].map(Option::unwrap_or_default);
+        let extinction: [f64; 3] = std::array::from_fn(|i| absorbed[i] + scattered[i]);
+        let albedo = std::array::from_fn(|i| if extinction[i] > 0.0 { scattered[i] / extinction[i] } else { 0.0 });
+        Ok(Some((albedo, extinction)))
     }
 
     /// The density of what is the same everywhere in its volume: there, too, such a medium ends at the box from 0 to 1 of that volume.

@@ -9,6 +9,7 @@ mod element;
 mod emitter;
 mod material;
 mod medium;
+mod older;
 mod principled;
 mod relief;
 mod serialized;
@@ -32,7 +33,7 @@ pub(super) fn import(bytes: &[u8], parameters: &[(String, String)], builder: &mu
         return Err(format!("{}: <{}> is not a Mitsuba scene", root.place, root.tag));
     }
     let version = root.attribute("version").unwrap_or("");
-    if !version.starts_with('3') && !version.starts_with('2') {
+    if !version.starts_with(['0', '2', '3']) {
         builder.leave_out(&root.place, format!("its version is \"{version}\": names of version 3 are expected"));
     }
     let ids = Ids::new(&root);
@@ -119,7 +120,7 @@ impl<'a> Walk<'a, '_, '_> {
         }
         // A material, texture or shape that nothing refers to is nothing in the picture.
         for child in root.children.iter().filter(|child| child.attribute("id").is_some()) {
-            if matches!(child.tag.as_str(), "bsdf" | "texture" | "spectrum" | "rgb") {
+            if matches!(child.tag.as_str(), "bsdf" | "texture" | "spectrum" | "rgb" | "srgb") {
                 child.mark();
             }
         }

@@ -117,3 +117,17 @@ fn gloss_of_mtl_becomes_coats_and_metals() {
         assert!(matches!(kind, MaterialKind::Lambert { .. }) && said.is_empty(), "{kind:?} {said:?}");
     }
 }
+
+/// Modellers write meshes that have collapsed to a line. A scene refuses them.
+#[test]
+fn a_mesh_without_area_is_left_out() {
+    let text = r#"<scene version="3.0.0"><sensor type="perspective"/><shape type="sphere"/>
+<shape type="obj"><string name="filename" value="flat.obj"/></shape></scene>"#;
+    let imported = imported("xml", text);
+    assert_eq!(scene(&imported).objects.len(), 1);
+    assert_eq!(said(&imported), ["line 2: none of its triangles has an area: it is left out"]);
+    let text = "WorldBegin Shape \"sphere\"\nShape \"trianglemesh\" \"integer indices\" [0 1 2] \"point3 P\" [0 0 0 1 0 0 2 0 0]";
+    let imported = super::imported("pbrt", text);
+    assert_eq!(scene(&imported).objects.len(), 1);
+    assert!(said(&imported).iter().any(|what| what.contains("has an area")), "{:?}", said(&imported));
+}

@@ -1,6 +1,5 @@
 //! Meshes, listed in the scene or in a file of their own.
 
-use glam::DVec3;
 use rayon::prelude::*;
 use std::hash::{BuildHasher, BuildHasherDefault, DefaultHasher};
 use std::path::Path;
@@ -9,7 +8,6 @@ use std::sync::Arc;
 use super::geometry::MeshShape;
 use crate::files::{Files, MeshKey};
 use crate::json::{Code, Optional, Reader, Span, Spanned};
-use crate::linear::unit;
 use crate::mesh::{self, Part, Shading};
 use crate::model::Mesh;
 
@@ -184,10 +182,7 @@ fn for_each_vertex<T, U>(
 /// Leaves out triangles without area, with a warning; none left is an error.
 fn keep_those_with_area(mesh: &mut Mesh, object: &str, at: Span, reader: &mut Reader<'_>) -> Option<()> {
     let all = mesh.triangles.len();
-    let is_flat = |triangle: &[u32; 3]| {
-        let [a, b, c] = triangle.map(|i| mesh.vertices[i as usize]);
-        !has_area(a, b, c)
-    };
+    let is_flat = |triangle: &[u32; 3]| !mesh::has_area(mesh, triangle);
     let triangles = mesh.triangles.par_iter().enumerate().with_min_len(CHUNK);
     let flat: Vec<usize> = triangles.filter(|(_, triangle)| is_flat(triangle)).map(|(number, _)| number).collect();
     leave_out(mesh, &flat);
@@ -264,25 +259,4 @@ fn shade(mesh: &mut Mesh, shading: Shading) {
         Shading::Smooth if mesh.normals.is_empty() => mesh.normals = mesh::smooth_normals(mesh),
         Shading::Smooth => {}
     }
-}
-
-/// Whether a triangle's normal can be told at all: three corners whose edges are not parallel to rounding.
-fn has_area(a: [f64; 3], b: [f64; 3], c: [f64; 3]) -> bool {
-    // Of most the angle at a corner is no smaller than 1e-8, and their sizes are usual, so that nothing overflows.
-    let [a, b, c] = [a, b, c].map(DVec3::from);
-    let (u, v) = (b - a, c - a);
-    let (squared, products) = (u.cross(v).length_squared(), u.length_squared() * v.length_squared());
-    if (1e-200..1e200).contains(&products) && squared > 1e-16 * products {
-        return true;
-    }
-    // Halved, so that the difference of two finite coordinates is finite.
-    let [a, b, c] = [a, b, c].map(|p| 0.5 * p);
-    // Two edges from the corner with the largest angle would be best; with unit vectors any two will do down to needles
-    // of 1e-15.
-    let edges = [b - a, c - b, a - c];
-    let Some(units) = unit(edges[0]).zip(unit(edges[1])).zip(unit(edges[2])) else { return false };
-    let ((u, v), w) = units;
-    let sines = [u.cross(v), v.cross(w), w.cross(u)].map(DVec3::length);
-    // Each component of a vector product of unit vectors is rounded three times.
-    sines.into_iter().fold(0.0, f64::max) > 4.0 * f64::EPSILON
 }

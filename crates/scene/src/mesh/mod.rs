@@ -4,12 +4,14 @@
 //! Whatever a file holds, a reader neither panics nor takes more memory than a small multiple of the file's size: counts
 //! in a header are held against the bytes that are there before anything is made of them.
 
+mod area;
 mod obj;
 mod ply;
 mod polygon;
 mod smooth;
 mod write;
 
+pub use area::has_area;
 pub use obj::{ObjMaterial, read_obj};
 pub use ply::read_ply;
 pub use smooth::smooth_normals;
