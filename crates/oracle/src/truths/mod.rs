@@ -63,6 +63,7 @@ mod rami;
 mod relief;
 mod rough_surfaces;
 mod scene;
+mod shared_paths;
 mod sheets;
 mod skies;
 mod skylight;
@@ -355,7 +356,7 @@ pub fn truths() -> Vec<Truth> {
     LIST.clone()
 }
 
-const GROUPS: [fn() -> Vec<Truth>; 52] = [
+const GROUPS: [fn() -> Vec<Truth>; 53] = [
     lamps_behind_glass::truths,
     furnaces::truths,
     beckmann::truths,
@@ -408,4 +409,5 @@ const GROUPS: [fn() -> Vec<Truth>; 52] = [
     meters::truths,
     luminous::truths,
     daylight::truths,
+    shared_paths::truths,
 ];
