@@ -31,6 +31,7 @@ mod fluorescence;
 mod furnaces;
 mod glass;
 mod gratings;
+mod guided;
 mod illumination;
 mod image_files;
 mod images;
@@ -356,7 +357,7 @@ pub fn truths() -> Vec<Truth> {
     LIST.clone()
 }
 
-const GROUPS: [fn() -> Vec<Truth>; 53] = [
+const GROUPS: [fn() -> Vec<Truth>; 54] = [
     lamps_behind_glass::truths,
     furnaces::truths,
     beckmann::truths,
@@ -410,4 +411,5 @@ const GROUPS: [fn() -> Vec<Truth>; 53] = [
     luminous::truths,
     daylight::truths,
     shared_paths::truths,
+    guided::truths,
 ];
