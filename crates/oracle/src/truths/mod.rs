@@ -22,6 +22,7 @@ mod connections;
 mod daylight;
 mod densities;
 mod dimensions;
+mod dispersive_facets;
 mod enclosures;
 mod exchange;
 mod expectation;
@@ -357,7 +358,7 @@ pub fn truths() -> Vec<Truth> {
     LIST.clone()
 }
 
-const GROUPS: [fn() -> Vec<Truth>; 54] = [
+const GROUPS: [fn() -> Vec<Truth>; 55] = [
     lamps_behind_glass::truths,
     furnaces::truths,
     beckmann::truths,
@@ -412,4 +413,5 @@ const GROUPS: [fn() -> Vec<Truth>; 54] = [
     daylight::truths,
     shared_paths::truths,
     guided::truths,
+    dispersive_facets::truths,
 ];
