@@ -12,6 +12,7 @@
 mod absorption;
 mod air;
 mod albedo_grids;
+mod bands;
 mod beams;
 mod beckmann;
 mod cameras;
@@ -117,10 +118,12 @@ pub enum Quantity {
     /// The mean of the readings of the scene's meters, in the units of [`Quantity::Radiance`] times those of the meter: irradiance
     /// (W·m⁻²·nm⁻¹), flux (W·nm⁻¹) or radiance.
     Meters,
+    /// The mean radiance over one of the bands of wavelengths that the scene's film keeps, by its number from 0.
+    Band(u32),
 }
 
 impl Quantity {
-    /// Its name in files: `S0` to `S3`, `meters`.
+    /// Its name in files: `S0` to `S3`, `meters`, `band`.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -129,6 +132,7 @@ impl Quantity {
             Self::Stokes2 => "S2",
             Self::Stokes3 => "S3",
             Self::Meters => "meters",
+            Self::Band(_) => "band",
         }
     }
 }
@@ -245,7 +249,10 @@ impl Truth {
     /// Reads another quantity than the radiance.
     fn reads(mut self, quantity: Quantity) -> Self {
         self.quantity = quantity;
-        self.claims(Claim::StokesParameters)
+        self.claims(match quantity {
+            Quantity::Band(_) => Claim::Bands,
+            _ => Claim::StokesParameters,
+        })
     }
 
     /// Reads only some pixels: columns x0 to x1, rows y0 to y1.
@@ -358,7 +365,7 @@ pub fn truths() -> Vec<Truth> {
     LIST.clone()
 }
 
-const GROUPS: [fn() -> Vec<Truth>; 55] = [
+const GROUPS: [fn() -> Vec<Truth>; 56] = [
     lamps_behind_glass::truths,
     furnaces::truths,
     beckmann::truths,
@@ -414,4 +421,5 @@ const GROUPS: [fn() -> Vec<Truth>; 55] = [
     shared_paths::truths,
     guided::truths,
     dispersive_facets::truths,
+    bands::truths,
 ];
