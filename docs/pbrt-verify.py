@@ -40,6 +40,7 @@ UNSUPPORTED = {
     "gratings": "gratings",
     "fluorescence": "fluorescence",
     "meters": "meters",
+    "bands": "bands of wavelengths",
     "priorities": "solids that share a place",
     "masks": "masks that coincide with other surfaces",
     "specular-connections": "lamps without area, seen by mirrors and through glass",

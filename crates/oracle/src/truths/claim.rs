@@ -53,6 +53,8 @@ pub enum Claim {
     StokesParameters,
     /// Reads the meters of a scene: [`Quantity::Meters`](super::Quantity::Meters).
     Meters,
+    /// Keeps the mean radiance over bands of wavelengths: [`Quantity::Band`](super::Quantity::Band).
+    Bands,
 }
 
 impl Claim {

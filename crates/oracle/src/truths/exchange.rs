@@ -5,7 +5,7 @@
 
 use serde_json::{Value, json};
 
-use super::{Claim, SceneFile, Truth};
+use super::{Claim, Quantity, SceneFile, Truth};
 use crate::{
     statistics::{Estimate, Welford},
     subjects::Reading,
@@ -66,6 +66,7 @@ fn entry(truth: &Truth) -> Value {
         "height": height,
         "band_nm": truth.band_nm,
         "quantity": truth.quantity.name(),
+        "band_channel": truth.band_channel(),
         "crop_px": truth.crop_px,
         "value": truth.value(),
         "formula": truth.formula,
@@ -109,6 +110,7 @@ impl Claim {
             Self::StatedPixels => "stated-pixels",
             Self::StokesParameters => "stokes-parameters",
             Self::Meters => "meters",
+            Self::Bands => "bands",
         }
     }
 }
@@ -119,6 +121,16 @@ impl Truth {
     pub fn film_px(&self) -> [usize; 2] {
         let scene: Value = serde_json::from_str(&self.scene).expect("a truth's scene is JSON");
         ["width", "height"].map(|side| scene["film"][side].as_u64().expect("a film has two sides") as usize)
+    }
+
+    /// The channel of the band that is read, if it is one: `S0.` and its middle with a decimal comma, such as `S0.450,000000nm`.
+    #[must_use]
+    pub fn band_channel(&self) -> Option<String> {
+        let Quantity::Band(number) = self.quantity else { return None };
+        let scene: Value = serde_json::from_str(&self.scene).expect("a truth's scene is JSON");
+        let [first, step] = [0, 2].map(|k| scene["film"]["bands_nm"][k].as_f64().expect("the film keeps bands"));
+        let middle = format!("{:.6}", first + f64::from(number) * step);
+        Some(format!("S0.{}nm", middle.replace('.', ",")))
     }
 }
 

@@ -2,12 +2,15 @@
 
 use std::f64::consts::PI;
 
+use serde_json::json;
+
 use super::{
     Claim, Truth,
-    scene::{Scene, brushed_metal, level_square, sphere},
+    scene::{Scene, black, brushed_metal, lambert, level_square, sphere},
 };
 use crate::{
     laws::{Masking, anisotropic_ggx_albedo, anisotropic_ggx_mirrors},
+    quadrature::{Cone, directions},
     vector::Vec3,
 };
 
@@ -15,6 +18,7 @@ pub(super) fn truths() -> Vec<Truth> {
     let mut list = highlights();
     list.extend(plates());
     list.push(ball());
+    list.push(blend());
     list
 }
 
@@ -148,4 +152,51 @@ fn ball() -> Truth {
         .sees(0.005)
         .claims(Claim::AnisotropicFacets)
         .claims(Claim::LosslessRoughMetal)
+}
+
+/// A surface of which a part is matte and the rest polished, below a lamp.
+fn blend() -> Truth {
+    const ALPHA: [f64; 2] = [0.06; 2];
+    const ALBEDO: f64 = 0.9;
+    const METAL: f64 = 0.3;
+    const TILT_DEG: f64 = 8.0;
+    const HALF_ANGLE_DEG: f64 = 10.0;
+    const FAR_M: f64 = 2.0;
+    let axis = direction(TILT_DEG, 0.0);
+    let material = json!({
+        "type": "blend", "first": lambert(ALBEDO), "second": brushed_metal(ALPHA, 0.0, false), "weight": METAL,
+    });
+    let lamp = sphere(axis.map(|x| FAR_M * x), FAR_M * HALF_ANGLE_DEG.to_radians().sin());
+    let scene = Scene::orthographic([0.0, 0.0, 0.5], [0.0; 3], 1e-4)
+        .thing(json!({ "shape": level_square([0.0; 3], 1e-3, true), "material": material }))
+        .lamp(lamp, black(), 1.0, "front");
+    let cone = Cone::new(axis, HALF_ANGLE_DEG.to_radians());
+    let matte = ALBEDO * HALF_ANGLE_DEG.to_radians().sin().powi(2) * axis[2];
+    let metal = directions(|i| anisotropic_ggx_mirrors(ALPHA, [0.0, 0.0, 1.0], i) * i[2], cone, 1e-8, 1_000_000).value;
+    let mixed = |share: f64| (1.0 - share) * matte + share * metal;
+    Truth::new(
+        "blend-of-matte-and-polished-below-a-lamp",
+        &scene,
+        mixed(METAL),
+        "(1 − w) ρ sin²σ cos θ + w ∫ D(h) G₁/4 dω over the lamp, σ = 10°, θ = 8°",
+    )
+    .because(
+        "A blend scatters what its parts do, each by its share: the matte part by the lamp's form factor, the polished one by the \
+         density of the facets half way to each place of the lamp.",
+    )
+    .confirmed("midpoints over the lamp, facets by their slopes", 1e-5, move || {
+        const STEPS: u32 = 400;
+        let part = |k: u32| (f64::from(k) + 0.5) / f64::from(STEPS);
+        let at = |h: f64, turn: f64| {
+            let [x, y, z] = cone.direction(h, 2.0 * PI * turn);
+            let tilt_deg = x.hypot(y).atan2(z).to_degrees();
+            (1.0 - METAL) * ALBEDO / PI * z + METAL * highlight_by_slopes((ALPHA, 0.0), tilt_deg, 0.0)
+        };
+        let sum: f64 = (0..STEPS).flat_map(|i| (0..STEPS).map(move |j| (i, j))).map(|(i, j)| at(part(i), part(j))).sum();
+        2.0 * PI * (1.0 - HALF_ANGLE_DEG.to_radians().cos()) * sum / f64::from(STEPS).powi(2)
+    })
+    .or_else("shares exchanged", mixed(1.0 - METAL))
+    .or_else("the matte part alone", matte)
+    .or_else("the polished part alone", metal)
+    .sees(2e-3)
 }

@@ -77,7 +77,7 @@ fn phases() -> Vec<Truth> {
 }
 
 /// Planck's spectral radiance, W·m⁻²·sr⁻¹·nm⁻¹, from the exact SI values of h, c and k.
-fn planck_radiance(wavelength_nm: f64, temperature_k: f64) -> f64 {
+pub(super) fn planck_radiance(wavelength_nm: f64, temperature_k: f64) -> f64 {
     const H: f64 = 6.626_070_15e-34;
     const C: f64 = 299_792_458.0;
     const K: f64 = 1.380_649e-23;

@@ -12,6 +12,7 @@
 mod absorption;
 mod air;
 mod albedo_grids;
+mod bands;
 mod beams;
 mod beckmann;
 mod cameras;
@@ -22,6 +23,7 @@ mod connections;
 mod daylight;
 mod densities;
 mod dimensions;
+mod dispersive_facets;
 mod enclosures;
 mod exchange;
 mod expectation;
@@ -31,6 +33,7 @@ mod fluorescence;
 mod furnaces;
 mod glass;
 mod gratings;
+mod guided;
 mod illumination;
 mod image_files;
 mod images;
@@ -64,6 +67,7 @@ mod rami;
 mod relief;
 mod rough_surfaces;
 mod scene;
+mod shared_paths;
 mod sheets;
 mod skies;
 mod skylight;
@@ -115,10 +119,12 @@ pub enum Quantity {
     /// The mean of the readings of the scene's meters, in the units of [`Quantity::Radiance`] times those of the meter: irradiance
     /// (W·m⁻²·nm⁻¹), flux (W·nm⁻¹) or radiance.
     Meters,
+    /// The mean radiance over one of the bands of wavelengths that the scene's film keeps, by its number from 0.
+    Band(u32),
 }
 
 impl Quantity {
-    /// Its name in files: `S0` to `S3`, `meters`.
+    /// Its name in files: `S0` to `S3`, `meters`, `band`.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -127,6 +133,7 @@ impl Quantity {
             Self::Stokes2 => "S2",
             Self::Stokes3 => "S3",
             Self::Meters => "meters",
+            Self::Band(_) => "band",
         }
     }
 }
@@ -243,7 +250,10 @@ impl Truth {
     /// Reads another quantity than the radiance.
     fn reads(mut self, quantity: Quantity) -> Self {
         self.quantity = quantity;
-        self.claims(Claim::StokesParameters)
+        self.claims(match quantity {
+            Quantity::Band(_) => Claim::Bands,
+            _ => Claim::StokesParameters,
+        })
     }
 
     /// Reads only some pixels: columns x0 to x1, rows y0 to y1.
@@ -356,7 +366,7 @@ pub fn truths() -> Vec<Truth> {
     LIST.clone()
 }
 
-const GROUPS: [fn() -> Vec<Truth>; 53] = [
+const GROUPS: [fn() -> Vec<Truth>; 57] = [
     lamps_behind_glass::truths,
     panes::truths,
     furnaces::truths,
@@ -410,4 +420,8 @@ const GROUPS: [fn() -> Vec<Truth>; 53] = [
     meters::truths,
     luminous::truths,
     daylight::truths,
+    shared_paths::truths,
+    guided::truths,
+    dispersive_facets::truths,
+    bands::truths,
 ];

@@ -23,11 +23,14 @@ fn phase(degrees: f64) -> Complex {
     [cos, sin]
 }
 
-/// What scatters: amplitudes at a right angle, and the light that it scatters beside, unpolarised, over F₁₁ of the amplitudes.
+/// What scatters: amplitudes at a right angle, and the light that it scatters beside, unpolarised, over F₁₁ of the amplitudes. `turned` is the
+/// amplitude by which the field across goes on within the plane, and that within across it: of grains and their mirror images, as many of
+/// either sign.
 #[derive(Clone, Copy)]
 struct Particle {
     across: Complex,
     within: Complex,
+    turned: f64,
     beside: f64,
 }
 
@@ -37,8 +40,15 @@ impl Particle {
         let squared = |z: Complex| z[0] * z[0] + z[1] * z[1];
         let [s1, s2] = [squared(self.across), squared(self.within)];
         let product = times(self.across, [self.within[0], -self.within[1]]);
-        let mean = 0.5 * (s1 + s2);
-        [mean * (1.0 + self.beside), 0.5 * (s2 - s1), mean, product[0], -product[1], product[0]]
+        let (mean, turned) = (0.5 * (s1 + s2), self.turned * self.turned);
+        [
+            (mean + turned) * (1.0 + self.beside),
+            0.5 * (s2 - s1),
+            mean - turned,
+            product[0] + turned,
+            -product[1],
+            product[0] - turned,
+        ]
     }
 
     /// A table that has this matrix at a right angle, and passes all light on as it is forward and back.
@@ -60,19 +70,27 @@ impl Particle {
     /// S₀ to S₃ in a picture whose rows lie within the plane of scattering, for light of intensity 1 whose field this is across that plane
     /// and within it.
     fn scattered(&self, [across, within]: [Complex; 2]) -> [f64; 4] {
-        // Seen from where it goes, the field within the plane points to the left.
-        let [left, up] = [times(within, self.within), times(across, self.across)];
-        let right = [-left[0], -left[1]];
-        let squared = |z: Complex| z[0] * z[0] + z[1] * z[1];
-        let product = times(right, [up[0], -up[1]]);
         let [f11, ..] = self.matrix();
         let mean = f11 / (1.0 + self.beside);
-        [
-            (squared(right) + squared(up) + mean * self.beside) / f11,
-            (squared(right) - squared(up)) / f11,
-            2.0 * product[0] / f11,
-            2.0 * product[1] / f11,
-        ]
+        let of_sign = |sign: f64| {
+            let with = |own: Complex, other: Complex| {
+                [own[0] + sign * self.turned * other[0], own[1] + sign * self.turned * other[1]]
+            };
+            // Seen from where it goes, the field within the plane points to the left.
+            let left = with(times(within, self.within), across);
+            let up = with(times(across, self.across), within);
+            let right = [-left[0], -left[1]];
+            let squared = |z: Complex| z[0] * z[0] + z[1] * z[1];
+            let product = times(right, [up[0], -up[1]]);
+            [
+                squared(right) + squared(up) + mean * self.beside,
+                squared(right) - squared(up),
+                2.0 * product[0],
+                2.0 * product[1],
+            ]
+        };
+        let [one, other] = [1.0, -1.0].map(of_sign);
+        [0, 1, 2, 3].map(|k| 0.5 * (one[k] + other[k]) / f11)
     }
 }
 
@@ -84,8 +102,9 @@ fn sheet(x: f64) -> Value {
 }
 
 pub(super) fn truths() -> Vec<Truth> {
-    let sphere = Particle { across: [1.0, 0.0], within: times([0.6, 0.0], phase(50.0)), beside: 0.0 };
+    let sphere = Particle { across: [1.0, 0.0], within: times([0.6, 0.0], phase(50.0)), turned: 0.0, beside: 0.0 };
     let grain = Particle { beside: 0.7, ..sphere };
+    let turning = Particle { turned: 0.8, ..sphere };
     let half = 0.5_f64.sqrt();
     // Light along x, seen along z. Its field across the plane of scattering lies along y, that within it along z.
     let slanting = json!({ "type": "polariser", "axis": [0, 1, 1] });
@@ -98,6 +117,12 @@ pub(super) fn truths() -> Vec<Truth> {
         (
             "circular-light-scattered-by-spheres",
             sphere,
+            vec![quarter.clone(), slanting.clone()],
+            [part, times(part, phase(90.0))],
+        ),
+        (
+            "circular-light-scattered-by-grains-that-turn-it",
+            turning,
             vec![quarter, slanting.clone()],
             [part, times(part, phase(90.0))],
         ),
@@ -142,8 +167,12 @@ pub(super) fn truths() -> Vec<Truth> {
                 .claims(Claim::Scattering)
                 .allows(1e-5 * single, "single precision; the picture is 1 mm wide")
                 .sees(sees);
+            let [.., f33, _, f44] = particle.matrix();
             list.push(match k {
                 0 => truth.or_else("nothing comes through the sheets", 0.0),
+                3 if f33 != f44 => {
+                    truth.or_else("F₄₄ taken for F₃₃", value * f33 / f44).or_else("light not polarised", 0.0)
+                }
                 _ => truth.or_else("the other sign", -value).or_else("light not polarised", 0.0),
             });
         }

@@ -2,6 +2,8 @@
 
 use std::sync::LazyLock;
 
+use serde_json::{Value, json};
+
 use super::{
     Claim, Truth,
     scene::{Scene, black, parallelogram, sellmeier_glass, triangular_prism},
@@ -20,6 +22,14 @@ pub(super) fn bk7(wavelength_nm: f64) -> f64 {
     (1.0 + (0..3).map(|i| BK7_B[i] * square / (square - BK7_C[i])).sum::<f64>()).sqrt()
 }
 
+/// A glass by Cauchy's formula without its second term, λ in µm.
+const CAUCHY_A: f64 = 1.5;
+const CAUCHY_C: f64 = 0.002;
+
+fn fourth_power(wavelength_nm: f64) -> f64 {
+    CAUCHY_A + CAUCHY_C / (wavelength_nm * 1e-3).powi(4)
+}
+
 /// Half the least deviation of a prism of 60°: asin(n·sin 30°) − 30°.
 pub(super) fn half_deviation(n: f64) -> f64 {
     (0.5 * n).asin() - 30.0_f64.to_radians()
@@ -30,8 +40,8 @@ const DISTANCE_M: f64 = 1.0;
 
 /// A beam through a prism of side 2 at least deviation for an index, and a strip 1 m beyond whose edge halves the beam; it
 /// reaches this far to the side of longer waves.
-fn scene(wavelength_nm: f64, beam_m: f64, strip_m: f64) -> Scene {
-    let half = half_deviation(bk7(wavelength_nm));
+fn scene(glass: Value, index: f64, beam_m: f64, strip_m: f64) -> Scene {
+    let half = half_deviation(index);
     let (sine, cosine) = half.sin_cos();
     // Inside, the beam runs along +x at height .6 of an equilateral prism that stands on y = 0.
     let height = 0.6;
@@ -43,16 +53,14 @@ fn scene(wavelength_nm: f64, beam_m: f64, strip_m: f64) -> Scene {
     let corner = sub(middle, [0.0, 0.0, 0.5]);
     Scene::orthographic(sub(entry, scale(0.5, inward)), entry, beam_m)
         .up([0.0, 0.0, 1.0])
-        .object(
-            triangular_prism([[-1.0, 0.0], [1.0, 0.0], [0.0, 3.0_f64.sqrt()]], [-1.0, 1.0]),
-            sellmeier_glass(BK7_B, BK7_C),
-        )
+        .object(triangular_prism([[-1.0, 0.0], [1.0, 0.0], [0.0, 3.0_f64.sqrt()]], [-1.0, 1.0]), glass)
         .lamp(parallelogram(corner, scale(strip_m, across), [0.0, 0.0, 1.0]), black(), 1.0, "both")
 }
 
 /// The same in one wavelength, the beam 1 mm wide.
 fn one_line(wavelength_nm: f64) -> Scene {
-    scene(wavelength_nm, BEAM_M, 2.0 * BEAM_M).band([wavelength_nm - 5e-4, wavelength_nm + 5e-4])
+    let glass = sellmeier_glass(BK7_B, BK7_C);
+    scene(glass, bk7(wavelength_nm), BEAM_M, 2.0 * BEAM_M).band([wavelength_nm - 5e-4, wavelength_nm + 5e-4])
 }
 
 /// Share of the beam that would land on the strip if the index were another, faces unchanged.
@@ -128,7 +136,14 @@ pub(super) fn truths() -> Vec<Truth> {
         .claims(Claim::CarriesPolarisation)
         .claims(Claim::Dispersion),
     );
-    list.push(rainbow());
+    list.push(rainbow("rainbow-cut-in-two", sellmeier_glass(BK7_B, BK7_C), bk7));
+    let of_fourth_power =
+        json!({ "type": "cauchy", "a": CAUCHY_A, "b_um2": 0, "c_um4": CAUCHY_C, "range_nm": [300, 900] });
+    let glass = json!({ "type": "dielectric", "interior": of_fourth_power });
+    list.push(
+        rainbow("rainbow-of-a-glass-by-the-fourth-power-of-the-wavelength", glass, fourth_power)
+            .claims(Claim::WholeFormat),
+    );
     list
 }
 
@@ -151,11 +166,11 @@ pub fn photometric_weight(wavelength_nm: f64) -> f64 {
 }
 
 /// The edge of a shining strip cuts the spectrum of white light in two.
-fn rainbow() -> Truth {
+fn rainbow(name: &str, glass: Value, index: fn(f64) -> f64) -> Truth {
     const EDGE_NM: f64 = 600.0;
-    let incidence = (0.5 * bk7(EDGE_NM)).asin();
+    let incidence = (0.5 * index(EDGE_NM)).asin();
     let through = move |wavelength_nm: f64| {
-        let n = bk7(wavelength_nm);
+        let n = index(wavelength_nm);
         let inside = (incidence.sin() / n).asin();
         let second = 60.0_f64.to_radians() - inside;
         fresnel_exact(incidence.cos(), n).transmittance() * fresnel_exact(second.cos(), 1.0 / n).transmittance()
@@ -171,8 +186,8 @@ fn rainbow() -> Truth {
     let kept =
         over(EDGE_NM, &|nm| through(nm) * 0.25 * (0..4).map(|lane| photometric_weight(turned(nm, lane))).sum::<f64>());
     Truth::new(
-        "rainbow-cut-in-two",
-        &scene(EDGE_NM, 1e-6, 0.1),
+        name,
+        &scene(glass, index(EDGE_NM), 1e-6, 0.1),
         value,
         "∫ȳT₁T₂dλ/∫ȳdλ from 600 nm on, ȳ of the CIE 1931 observer",
     )

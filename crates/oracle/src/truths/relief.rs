@@ -15,6 +15,7 @@ pub(super) fn truths() -> Vec<Truth> {
     list.extend(vertex_normals());
     list.push(interpolated());
     list.push(stretched_ball());
+    list.push(bumps_of_a_ball());
     list
 }
 
@@ -297,5 +298,54 @@ fn stretched_ball() -> Truth {
             sum / f64::from(steps).powi(2)
         })
         .or_else("normals placed as directions are", mean(&|x, y| [x, y, height(x, y)]))
+        .sees(1e-3)
+}
+
+/// A ball of radius 1 whose heights grow from its south pole −y to its north pole.
+fn bumps_of_a_ball() -> Truth {
+    const HEIGHT_M: f64 = 2.0;
+    let centre = [0.2, 0.5];
+    let file = "four-steps-up.hdr";
+    // By a quarter from texel to texel, each a quarter of v; so the height over v is a straight line between the middles of the last.
+    let rows = [1.0, 0.75, 0.5, 0.25];
+    let scene = view(centre)
+        .thing(json!({
+            "shape": sphere([0.0; 3], 1.0), "material": white(), "bump_map": { "file": file, "height_m": HEIGHT_M, "wrap": "clamp" },
+        }))
+        .file(file, grey_hdr(1, &rows));
+    let of_slope = move |slope: f64| {
+        move |x: f64, y: f64| {
+            let (z, off_axis) = ((1.0 - x * x - y * y).sqrt(), (1.0 - y * y).sqrt());
+            let north = [-y * x / off_axis, off_axis, -y * z / off_axis];
+            shown([x - slope * north[0], y - slope * north[1], z - slope * north[2]])
+        }
+    };
+    let mean = move |at: &dyn Fn(f64, f64) -> f64| {
+        let [x, y] = centre.map(|at: f64| [at - 0.1, at + 0.1]);
+        crate::quadrature::rectangle(at, x, y, 1e-12, 100_000).value / 0.04
+    };
+    // From pole to pole is π of the way along a meridian.
+    let slope = HEIGHT_M / std::f64::consts::PI;
+    Truth::new("bump-map-from-pole-to-pole-of-a-ball", &scene, mean(&of_slope(slope)), "mean over the picture of ρ n·l, n ∝ r − h′ e, h′ = H/(π R)")
+        .because(
+            "v runs from the south pole to the north pole, over half a turn. Heights that grow by H along it have the slope H/(π R) toward \
+             the north, e, and the normal r is bent by that; in parallel light of irradiance π it shows ρ n·l.",
+        )
+        .confirmed("the normal's latitude, by a sum over the picture", 1e-5, move || {
+            let steps = 200;
+            let place = |k: u32, centre: f64| centre - 0.1 + 0.2 * (f64::from(k) + 0.5) / f64::from(steps);
+            // The normal has the place's longitude, and a latitude that is atan h′ nearer to the equator.
+            let at = |x: f64, y: f64| {
+                let (latitude, longitude) = (y.asin() - slope.atan(), x.atan2((1.0 - x * x - y * y).sqrt()));
+                let (sin, cos) = latitude.sin_cos();
+                shown([cos * longitude.sin(), sin, cos * longitude.cos()])
+            };
+            let all = (0..steps).flat_map(|i| (0..steps).map(move |j| (i, j)));
+            all.map(|(i, j)| at(place(i, centre[0]), place(j, centre[1]))).sum::<f64>() / f64::from(steps).powi(2)
+        })
+        .or_else("the normal of the shape", mean(&of_slope(0.0)))
+        .or_else("v over a whole turn", mean(&of_slope(0.5 * slope)))
+        .or_else("white is deep", mean(&of_slope(-slope)))
+        .or_else("v over the length of the axis", mean(&of_slope(0.5 * HEIGHT_M)))
         .sees(1e-3)
 }

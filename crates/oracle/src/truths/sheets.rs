@@ -4,12 +4,14 @@ use serde_json::{Value, json};
 
 use super::{
     Claim, Truth,
-    scene::{Scene, black, level_square},
+    scene::{Scene, black, level_square, parallelogram},
 };
+use crate::vector::{Vec3, cross, dot, normalize};
 
 pub(super) fn truths() -> Vec<Truth> {
     let mut list = polarisers();
     list.extend(retarders());
+    list.extend(tilted());
     list.into_iter().map(|truth| truth.claims(Claim::CarriesPolarisation)).collect()
 }
 
@@ -142,4 +144,66 @@ fn retarders() -> Vec<Truth> {
             "0: together half a wave, which turns the light by 90°",
         ),
     ]
+}
+
+/// Sheets turned by 60° about an axis at 45° to their own.
+fn tilted() -> Vec<Truth> {
+    const BECAUSE: &str = "Wires in a sheet absorb what swings along them; what passes swings across both the ray and the wires. They lie in the \
+                           sheet, across its axis. So of a sheet that is turned by τ about the y axis, and whose axis is at 45° to that, light along \
+                           z passes that swings along (1, cos τ); the axis itself is seen along (cos τ, 1).";
+    let (sin, cos) = 60.0_f64.to_radians().sin_cos();
+    // The sheet's side that is turned, and its normal.
+    let (side, normal): (Vec3, Vec3) = ([cos, 0.0, -sin], [sin, 0.0, cos]);
+    let own: Vec3 = [cos, 1.0, -sin];
+    let shape = parallelogram([-cos, -1.0, 1.5 + sin], side.map(|x| 2.0 * x), [0.0, 2.0, 0.0]);
+    let [true_deg, seen_deg] = [cos.atan().to_degrees(), (1.0 / cos).atan().to_degrees()];
+    // In front of others, which are level.
+    let before =
+        |material: Value, others: &[Value]| scene(others).thing(json!({ "shape": shape, "material": material }));
+    let square = |degrees: f64| degrees.to_radians().cos().powi(2);
+    let first_deg = 10.0_f64;
+    let polarised = Truth::new(
+        "polariser-turned-about-a-line-aslant",
+        &before(json!({ "type": "polariser", "axis": own }), &[polariser(first_deg)]),
+        0.5 * square(true_deg - first_deg),
+        "½ cos²(ψ − 10°), tan ψ = cos 60°",
+    )
+    .because(BECAUSE)
+    .confirmed("the field's direction across the wires, by vectors", 1e-12, move || {
+        let passes = normalize(cross([0.0, 0.0, 1.0], cross(normal, own)));
+        let (sin, cos) = first_deg.to_radians().sin_cos();
+        0.5 * dot(passes, [cos, sin, 0.0]).powi(2)
+    })
+    .or_else("the axis as it is seen", 0.5 * square(seen_deg - first_deg))
+    .or_else("not tilted", 0.5 * square(45.0 - first_deg))
+    .sees(2e-3);
+    // Between crossed polarisers, the nearer one in front of the plate at 100°.
+    let (delay_deg, rear_deg) = (100.0_f64, 10.0_f64);
+    let crossed = move |degrees: f64| {
+        let (turn, delay) = ((2.0 * (degrees - rear_deg)).to_radians(), (0.5 * delay_deg).to_radians());
+        0.5 * (turn.sin() * delay.sin()).powi(2)
+    };
+    let plate = json!({ "type": "retarder", "axis": own, "retardance_deg": delay_deg });
+    let nearest = level_square([0.0, 0.0, 1.8], 0.2, true);
+    let delayed = before(plate, &[polariser(rear_deg)])
+        .thing(json!({ "shape": nearest, "material": polariser(rear_deg + 90.0) }));
+    let delayed = Truth::new(
+        "retarder-turned-about-a-line-aslant",
+        &delayed,
+        crossed(true_deg),
+        "½ sin²2(ψ − 10°) sin² 50°, tan ψ = cos 60°",
+    )
+    .because(BECAUSE)
+    .confirmed("the field's two parts with their phases, by vectors", 1e-12, move || {
+        let fast = normalize(cross([0.0, 0.0, 1.0], cross(normal, own)));
+        let slow = cross([0.0, 0.0, 1.0], fast);
+        let (sin, cos) = rear_deg.to_radians().sin_cos();
+        let (from, to): (Vec3, Vec3) = ([cos, sin, 0.0], [-sin, cos, 0.0]);
+        let [a, b] = [fast, slow].map(|part| dot(from, part) * dot(to, part));
+        0.5 * (a * a + b * b + 2.0 * a * b * delay_deg.to_radians().cos())
+    })
+    .or_else("the axis as it is seen", crossed(seen_deg))
+    .or_else("not tilted", crossed(45.0))
+    .sees(2e-3);
+    vec![polarised, delayed]
 }

@@ -42,8 +42,10 @@ class Truth:
     value: float
     """What the mean over the pixels of :attr:`crop_px` must be."""
     quantity: str
-    """What is read: ``"S0"``, the radiance; the Stokes parameter ``"S1"``, ``"S2"`` or ``"S3"``; or ``"meters"``, the mean of the
-    scene's meters."""
+    """What is read: ``"S0"``, the radiance; the Stokes parameter ``"S1"``, ``"S2"`` or ``"S3"``; ``"meters"``, the mean of the
+    scene's meters; or ``"band"``, the mean radiance over a band of wavelengths."""
+    band_channel: str | None
+    """The channel of that band in a picture's file, such as ``"S0.450,000000nm"``."""
     crop_px: tuple[int, int, int, int] | None
     """The pixels that are read, columns x0 to x1 and rows y0 to y1; all if None."""
     formula: str

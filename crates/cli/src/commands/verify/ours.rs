@@ -134,7 +134,8 @@ pub(super) fn run(args: &VerifyArgs, chosen: Vec<Truth>) -> Outcome {
         .map_err(|error| Failure::run(Problem::from_err(error).wrap_err("cannot listen to signals")))?;
     // Plain radiance with polarisations averaged at every interface, or with polarisation, each where a truth wants it.
     let claims =
-        [&Claim::UNPOLARISED[..], &[Claim::CarriesPolarisation, Claim::StokesParameters, Claim::Meters]].concat();
+        [&Claim::UNPOLARISED[..], &[Claim::CarriesPolarisation, Claim::StokesParameters, Claim::Meters, Claim::Bands]]
+            .concat();
     let chosen: Vec<Truth> = chosen.into_iter().filter(|truth| truth.applies_to(&claims)).collect();
     // Of all truths some are judged a second time, by more samples.
     let again = args.names.is_empty() && !args.thorough;

@@ -176,13 +176,16 @@ fn pixels(path: &Path, truth: &Truth, quantity: Quantity) -> Result<(Vec<f64>, O
         Quantity::Radiance => String::new(),
         stokes => format!("{}.", stokes.name()),
     };
-    let sensor: Vec<(String, f64)> = match picture.channel(&format!("{prefix}Y")) {
-        Some(_) => vec![(format!("{prefix}Y"), 1.0)],
-        None => LUMINANCE.iter().map(|(name, weight)| (format!("{prefix}{name}"), *weight)).collect(),
+    let band = if quantity == truth.quantity { truth.band_channel() } else { None };
+    let sensor: Vec<(String, f64)> = match (band, picture.channel(&format!("{prefix}Y"))) {
+        (Some(channel), _) => vec![(channel, 1.0)],
+        (None, Some(_)) => vec![(format!("{prefix}Y"), 1.0)],
+        (None, None) => LUMINANCE.iter().map(|(name, weight)| (format!("{prefix}{name}"), *weight)).collect(),
     };
     let values = weighed(&picture, &sensor, |name| picture.require(name).map(widened).map_err(|e| e.to_string()))
         .map_err(|error| {
-            format!("`{}`: {error} ({prefix}Y, or {prefix}R, {prefix}G and {prefix}B, is needed)", path.display())
+            let needed = truth.band_channel().unwrap_or(format!("{prefix}Y, or {prefix}R, {prefix}G and {prefix}B,"));
+            format!("`{}`: {error} ({needed} is needed)", path.display())
         })?;
     let has_errors = sensor.iter().all(|(name, _)| error_channel(&picture, name).is_some());
     let errors = has_errors.then(|| {

@@ -69,7 +69,7 @@ impl Series {
         Ok(())
     }
 
-    /// What a truth reads off each film: the mean of Y, or of the Y of a Stokes parameter.
+    /// What a truth reads off each film: the mean of Y, of the Y of a Stokes parameter, or of a band.
     pub(super) fn means(&self, quantity: Quantity, crop_px: Option<[u32; 4]>) -> impl Iterator<Item = f64> {
         let whole = self.prepared[0].whole(None).rect;
         let rect = crop_px.map_or(whole, |[x0, x1, y0, y1]| PixelRect { x0, y0, x1, y1 });
@@ -79,7 +79,27 @@ impl Series {
             Quantity::Stokes2 => mean_stokes(film, rect, 1),
             Quantity::Stokes3 => mean_stokes(film, rect, 2),
             Quantity::Meters => self.mean_reading(film, rect),
+            Quantity::Band(number) => self.mean_of_band(film, rect, number),
         })
+    }
+
+    /// Mean radiance over a band of wavelengths, of all that fell into it; not a number where the film keeps no bands.
+    fn mean_of_band(&self, film: &Film, rect: PixelRect, number: u32) -> f64 {
+        let (band, factor) = match self.prepared[0].band_factors() {
+            // One sum stands for all.
+            Some(factors) => (0, factors[number as usize]),
+            None => (number, 1.0),
+        };
+        if band >= film.bands() {
+            return f64::NAN;
+        }
+        let (mut sum, mut count) = (0.0, 0.0);
+        for (x, y) in rect.pixels() {
+            let band = film.band(x, y, band);
+            sum += band.radiance * f64::from(band.count);
+            count += f64::from(band.count);
+        }
+        factor * sum / count
     }
 
     /// Mean over the readings of all meters, in units of the sensor.
