@@ -4,7 +4,8 @@
     pip install mitsuba==3.9.1 OpenEXR numpy
     python3 tests/peers/mitsuba/published.py FOLDER [--etalon target/release/etalon] [--out OUT] [WORD ...]
 
-Each file .xml that no other includes is a scene; with words, only those whose path has one of them. Files that Mitsuba cannot load are left out.
+Each file .xml that no other includes is a scene; with words, only those whose path has one of them. Files that Mitsuba cannot load are left out; of those of version
+0.x it gets a copy without what it does not know (`older.py`).
 Pictures are small (`--width`). Mitsuba renders each scene in its spectral and in its RGB variant, or, where
 something polarises, in its polarised one. Two pictures agree if for one of the variants
 
@@ -28,6 +29,7 @@ import subprocess
 import numpy as np
 
 from compare import MOST_ERRORS, SMALL, channels
+from older import load
 
 HERE = pathlib.Path(__file__).resolve().parent
 VARIANTS = ("llvm_ad_spectral", "llvm_ad_rgb")
@@ -50,10 +52,10 @@ def keys_of_skies(params):
     return [key for key in params.keys() if key.endswith("data") and f"{key[:-4]}to_world" in params and f"{key[:-4]}scale" in params]
 
 
-def skies(mi, scene, given):
+def skies(mi, scene, given, out):
     """The texels of the skies of a scene: rows × columns × RGB."""
     mi.set_variant("llvm_ad_rgb")
-    params = mi.traverse(mi.load_file(str(scene), **given))
+    params = mi.traverse(load(mi, scene, given, out))
     # A column of the other edge stands at each side.
     return [np.array(params[key])[:, 1:-1, :3] for key in keys_of_skies(params)]
 
@@ -76,9 +78,9 @@ def finer(texels):
     return between(places, upper, np.minimum(upper + 1, rows - 1))(wide)
 
 
-def by_mitsuba(mi, scene, given, width, spp, texels_of_skies=()):
+def by_mitsuba(mi, scene, given, args, texels_of_skies=()):
     """Renders about as wide as this, with these texels for its skies: passes × rows × columns × channels."""
-    loaded = mi.load_file(str(scene), **given)
+    loaded, width = load(mi, scene, given, args.out), args.width
     params = mi.traverse(loaded)
     # Names differ between variants where the file has none.
     for key, texels in zip(keys_of_skies(params), texels_of_skies):
@@ -93,7 +95,7 @@ def by_mitsuba(mi, scene, given, width, spp, texels_of_skies=()):
     if (crop := key.replace("film.size", "film.crop_size")) in params:
         params[crop] = size
     params.update()
-    passes = [np.array(mi.render(loaded, spp=max(spp // PASSES, 1), seed=seed), np.float64) for seed in range(PASSES)]
+    passes = [np.array(mi.render(loaded, spp=max(args.spp // PASSES, 1), seed=seed), np.float64) for seed in range(PASSES)]
     return np.array([np.repeat(image[..., :1], 3, 2) if image.shape[2] < 3 else image[..., :3] for image in passes])
 
 
@@ -144,7 +146,7 @@ def compared(mi, scene, stem, args):
     for variant in (POLARISED,) if is_polarised else VARIANTS:
         mi.set_variant(variant)
         try:
-            passes = by_mitsuba(mi, scene, given, args.width, args.spp)
+            passes = by_mitsuba(mi, scene, given, args)
         except Exception as error:  # whatever Mitsuba throws
             result[variant] = (str(error).strip().splitlines() or [type(error).__name__])[-1][:200]
             continue
@@ -163,10 +165,10 @@ def compared(mi, scene, stem, args):
         result[variant] = judge(channels(ours)[0], passes)
     judged = "etalon" in result and "refused" not in result
     # The texels are taken from the RGB variant.
-    if judged and not agrees(result) and not isinstance(result.get(VARIANTS[1]), str) and (texels := skies(mi, scene, given)):
+    if judged and not agrees(result) and not isinstance(result.get(VARIANTS[1]), str) and (texels := skies(mi, scene, given, args.out)):
         variant = POLARISED if is_polarised else VARIANTS[0]
         mi.set_variant(variant)
-        result[FINE_SKY] = judge(channels(ours)[0], by_mitsuba(mi, scene, given, args.width, args.spp, texels))
+        result[FINE_SKY] = judge(channels(ours)[0], by_mitsuba(mi, scene, given, args, texels))
     return result if "etalon" in result else None
 
 

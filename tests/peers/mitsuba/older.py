@@ -1,0 +1,64 @@
+"""Loads files of version 0.x in Mitsuba 3, which reads some of what they say and refuses the rest."""
+
+import re
+import xml.etree.ElementTree as ET
+
+INTEGRATORS = ("path", "volpath", "volpathmis", "direct", "aov", "stokes", "moment", "depth")
+SAMPLERS = ("independent", "stratified", "multijitter", "orthogonal", "ldsampler")
+FILMS = ("hdrfilm", "specfilm")
+FILTERS = ("nearest", "bilinear")
+
+
+def load(mi, scene, given, folder):
+    """The scene as it is; if Mitsuba refuses it, a copy in a folder without what it does not know and light transport does not need."""
+    try:
+        return mi.load_file(str(scene), **given)
+    except Exception as error:  # whatever Mitsuba throws
+        refusal = error
+    mi.file_resolver().prepend(str(scene.parent))
+    config = mi.parser.ParserConfig(mi.variant())
+    config.unused_properties = config.unused_parameters = mi.LogLevel.Debug
+    copy = folder / f"{scene.stem}-for-mitsuba.xml"
+    for file in (scene, copy):
+        try:
+            if file is copy:
+                copy.write_text(edited(scene.read_text(errors="replace")))
+            state = mi.parser.parse_file(config, str(file), **given)
+            mi.parser.transform_all(config, state)
+            loaded = mi.parser.instantiate(config, state)
+            return loaded[0] if isinstance(loaded, (list, tuple)) else loaded
+        except Exception as error:
+            refusal = error
+    raise refusal
+
+
+def edited(text):
+    """The same picture, in words that Mitsuba 3 knows."""
+    root = ET.fromstring(text)
+    for parent in list(root.iter()):
+        for child in list(parent):
+            kind, value = child.get("type"), (child.get("value") or "").strip()
+            if child.tag == "lookAt":
+                child.tag = "lookat"
+            elif child.tag == "integrator" and kind not in INTEGRATORS:
+                depth = next((of.get("value") for of in child if of.get("name") in ("maxDepth", "max_depth")), "-1")
+                child.clear()
+                child.set("type", "path")
+                ET.SubElement(child, "integer", name="max_depth", value=depth)
+            elif child.tag == "sampler" and kind not in SAMPLERS:
+                child.set("type", "independent")
+            elif child.tag == "film" and kind not in FILMS:
+                child.set("type", "hdrfilm")
+            elif child.tag == "spectrum" and ":" not in value and re.search(r"[\s,]", value):
+                child.tag = "rgb"
+            elif child.tag == "srgb":
+                child.tag = "rgb"
+                child.set("value", " ".join(str(linear(float(part))) for part in value.replace(",", " ").split()))
+            elif child.get("name") in ("filterType", "filter_type") and value not in FILTERS or parent.tag == "film" and "ormat" in (child.get("name") or ""):
+                parent.remove(child)
+    return ET.tostring(root, encoding="unicode")
+
+
+def linear(signal):
+    """The curve of sRGB undone."""
+    return signal / 12.92 if signal <= 0.04045 else ((signal + 0.055) / 1.055) ** 2.4
