@@ -106,6 +106,11 @@ impl<'a> SurfaceInteraction<'a> {
         self.point.normal.dot(wi) * self.point.normal.dot(self.wo) < 0.0
     }
 
+    /// Whether all light that meets it is reflected or goes through, each in one direction.
+    pub(crate) fn is_glass(&self, world: &World<'a>) -> bool {
+        world.tables.is_glass(self.surface.material)
+    }
+
     /// Looks up what it does to light.
     #[inline(always)]
     pub(crate) fn prepare_scattering(&mut self, world: &World<'a>) {

@@ -61,6 +61,8 @@ struct MaterialRecord {
     solid_angle_part: bool,
     /// Whether light may pass it straight on.
     passes_straight: bool,
+    /// Whether it is smooth glass or a pane: which part it reflects is known.
+    glass: bool,
     /// Whether it is a pane, which passes all light straight on that it does not reflect.
     pane: bool,
 }
@@ -96,6 +98,7 @@ impl ShadingTables {
             kind: if polarised { BsdfKind::General } else { kind(bsdf, &mut spectra, &mut interfaces) },
             solid_angle_part: properties.solid_angle,
             passes_straight: properties.passes_straight,
+            glass: bsdf.is_smooth_glass() || bsdf.is_pane(),
             pane: bsdf.is_pane(),
         };
         let materials: Vec<_> = surfaces.bsdfs.iter().zip(&surfaces.properties).map(material).collect();
@@ -145,6 +148,11 @@ impl ShadingTables {
     #[inline(always)]
     pub(crate) fn is_pane(&self, object: u32, material: usize) -> bool {
         self.objects[object as usize].opaque && self.materials[material].pane
+    }
+
+    /// Whether a material is smooth glass or a pane.
+    pub(crate) fn is_glass(&self, material: usize) -> bool {
+        self.materials[material].glass
     }
 
     /// Whether light may pass a material straight on: a pane, or a blend with one.

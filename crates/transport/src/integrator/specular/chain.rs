@@ -1,7 +1,7 @@
 //! A chain of mirrors and smooth interfaces, as a function of the direction in which it begins.
 
 use super::solve::Root;
-use super::walker::{LobeChoice, Scout, Walker, media_toward};
+use super::walker::{LobeChoice, Lobes, Scout, Walker, media_toward};
 use crate::film::Counters;
 use crate::integrator::vertex::Vertex;
 use crate::integrator::wavelength_lanes::WavelengthModel;
@@ -52,6 +52,8 @@ pub(super) struct Link {
     pub position: Vec3<f64>,
     /// Unit vector.
     pub direction: Vec3<f64>,
+    /// Whether the chain goes through it.
+    pub passes: bool,
     /// Whether it is a pane that the chain passes, which shadow rays do too.
     pub passes_pane: bool,
 }
@@ -71,7 +73,12 @@ impl<'c, 'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: 
             left /= GOES_ON;
             most += 1;
         }
-        Self { world, vertex, path, scout: Scout::of(path), choice: LobeChoice { numbers, refracts: false }, most }
+        Self { world, vertex, path, scout: Scout::of(path), choice: LobeChoice { numbers, lobes: Lobes::Drawn }, most }
+    }
+
+    /// From here on vertices choose their lobes so.
+    pub(super) fn choose(&mut self, lobes: Lobes) {
+        self.choice.lobes = lobes;
     }
 
     /// Follows the chain that begins in a direction. `each` hears of its vertices, and says whether to go on.
@@ -83,10 +90,12 @@ impl<'c, 'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: 
             let (surface, position) = (next.vertex.point.surface, next.vertex.point.position);
             let is_pane = self.world.panes.is_some()
                 && self.world.tables.is_pane(next.vertex.surface.object, next.vertex.surface.material);
-            let before = ray.direction;
+            let (before, normal) = (ray.direction, next.vertex.point.normal);
             ray = self.scout.go_on(self.world, next);
             let passes_pane = is_pane && ray.direction == before;
-            if self.is_too_long(number + 1) || !each(&Link { surface, position, direction: ray.direction, passes_pane })
+            let passes = normal.dot(before) * normal.dot(ray.direction) > 0.0;
+            if self.is_too_long(number + 1)
+                || !each(&Link { surface, position, direction: ray.direction, passes, passes_pane })
             {
                 return;
             }
@@ -114,7 +123,7 @@ impl<'c, 'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: 
     /// The ray on which a ray of a lamp leaves the last mirror or interface that it meets, refracted wherever it can be; `None` if it meets none.
     pub(super) fn passed(&mut self, ray: &Ray<f64>, counters: &mut Counters) -> Option<Ray<f64>> {
         let mut ray = self.begin_at_lamp(ray, counters);
-        let choice = LobeChoice { refracts: true, ..self.choice };
+        let choice = LobeChoice { lobes: Lobes::Refracted, ..self.choice };
         let mut passed = None;
         for number in 0..self.most {
             let Some(next) = self.scout.next(self.world, &choice, &ray, number, counters) else { break };

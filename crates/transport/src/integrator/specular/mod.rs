@@ -12,7 +12,9 @@
 //! 1. Numbers are drawn once that choose the lamp, how long the chain may be, and the lobe at each of its vertices. They stay the same from now
 //!    on, so the chain is a function of ω. That a lobe was chosen is accounted for in W, as on any path.
 //! 2. A direction is drawn and improved by Newton's method until the chain points at the lamp ([`solve`]).
-//! 3. A root is found with a probability p that nobody knows. Further directions are drawn, and improved in the same way, until one leads to
+//! 3. One search begins straight toward the lamp, and its chain is refracted wherever it can be. Nothing about it is drawn, so the root that it
+//!    leads to counts as it is.
+//! 4. Any other root is found with a probability p that nobody knows. Further directions are drawn, and improved in the same way, until one leads to
 //!    the same root. Their number has the mean 1/p, and multiplies what the root brings (Zeltner, Georgiev & Jakob 2020, *Specular Manifold
 //!    Sampling*, §4.3). A root that brings nothing needs none of them.
 //!
@@ -31,12 +33,15 @@ use crate::film::Counters;
 use crate::guiding::{SeedNumbers, SpecularConnections, SpecularObjects};
 use crate::integrator::observer::{Found, Observer};
 use crate::integrator::wavelength_lanes::WavelengthModel;
+use crate::light::{Light, Source};
 use crate::polarisation::Polarisation;
 use crate::sampler::{NumberStream, Sampler};
 use crate::scene::world::World;
-use chain::Chain;
+use chain::{Brought, Chain};
+use etalon_optics::Vec3;
 pub(crate) use passed_beam::PassedBeams;
-use solve::{Chooses, Seed};
+use solve::{Chooses, Root, Seed};
+use walker::Lobes;
 
 /// Most directions that are drawn to learn how probable a root is.
 const MOST_TRIALS: u32 = 1 << 16;
@@ -129,43 +134,91 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         let Some((index, probability)) = connections.lights.choose(from, u_light) else { return };
         let light = &connections.lights.lights()[index];
         let Some(source) = light.source() else { return };
-        let mut chain = Chain::new(self, world, vertex, numbers.further, u_length);
-        let seed = |trial: u32, chain: &mut Chain<'_, 'a, _, M, P, N>, counters: &mut Counters| {
-            let u = numbers.of_seed(trial);
-            let Some(lamp_ray) = connections.lamp_ray(from, light, &source, &u) else {
-                let direction = connections.direction(from, &source, &u);
-                return Some(Seed { direction, chooses: Chooses::By(u.vertices) });
-            };
-            let (last, vertices) = chain.of_lamp(&lamp_ray, counters)?;
-            let way = last - from;
-            Some(Seed { direction: way / way.length(), chooses: Chooses::This(vertices) })
-        };
-        let Some(root) = seed(0, &mut chain, counters).and_then(|seed| chain.solve(&seed, &source, counters)) else {
-            return;
-        };
-        let Some(brought) = chain.bring(&root, light, counters) else { return };
+        let chain = Chain::new(self, world, vertex, numbers.further, u_length);
+        let found = Search { connections, from, light, source, numbers, u_kept }.roots(chain, counters);
+        let number = connections.numbers[index];
+        for (brought, weight) in found.into_iter().flatten() {
+            let white = self.spectrum_of_light(world, number);
+            let factor = self.coloured(white, brought.colour) * (weight / (probability * made));
+            if let Some(stokes) = brought.stokes {
+                self.polarisation.record(stokes.map(|s| s * factor));
+            }
+            let found = self.gather(brought.light * factor);
+            observer.light(self.vertex, Found::SpecularConnection { light: number }, found);
+        }
+    }
+}
+
+/// A search for chains from a point to a lamp.
+struct Search<'s> {
+    connections: &'s SpecularConnections,
+    from: Vec3<f64>,
+    light: &'s Light,
+    source: Source,
+    numbers: Numbers,
+    /// Decides whether light that is weak gets trials.
+    u_kept: f64,
+}
+
+impl Search<'_> {
+    /// What is found of the lamp, and what it is to be multiplied by: along the chain that can be told without drawing it, and along one more.
+    fn roots<'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
+        &self,
+        mut chain: Chain<'_, 'a, V, M, P, N>,
+        counters: &mut Counters,
+    ) -> [Option<(Brought<N>, f64)>; 2] {
+        let straight = Seed { direction: self.source.toward(self.from), chooses: Chooses::Nearest };
+        chain.choose(Lobes::Sure);
+        let sure = chain.solve(&straight, &self.source, counters);
+        let first = sure.as_ref().and_then(|root| chain.bring(root, self.light, counters));
+        chain.choose(Lobes::Drawn);
+        [first.map(|brought| (brought, 1.0)), self.drawn(&mut chain, sure.as_ref(), counters)]
+    }
+
+    /// A root that is drawn, and the number of trials that find it again. It is not `sure`, which counts already.
+    fn drawn<'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
+        &self,
+        chain: &mut Chain<'_, 'a, V, M, P, N>,
+        sure: Option<&Root>,
+        counters: &mut Counters,
+    ) -> Option<(Brought<N>, f64)> {
+        let root = self.seed(0, chain, counters).and_then(|seed| chain.solve(&seed, &self.source, counters))?;
+        if sure.is_some_and(|sure| root.is(sure)) {
+            return None;
+        }
+        let brought = chain.bring(&root, self.light, counters)?;
         // Trials are for what is worth them.
         let kept = (brought.concentration / WORTH_TRIALS).min(1.0);
-        if u_kept >= kept {
-            return;
+        if self.u_kept >= kept {
+            return None;
         }
         let mut is_found = |trial: u32| {
-            let approached =
-                seed(trial, &mut chain, counters).and_then(|seed| chain.approach(&seed, &source, counters));
+            let seed = self.seed(trial, chain, counters);
+            let approached = seed.and_then(|seed| chain.approach(&seed, &self.source, counters));
             approached.is_some_and(|approached| approached.is_beside(&root))
         };
         // How many directions are drawn until one leads to the same root.
         let Some(trials) = (1..=MOST_TRIALS).find(|trial| is_found(*trial)) else {
             counters.record_cut(f64::MAX);
-            return;
+            return None;
         };
-        let number = connections.numbers[index];
-        let white = self.spectrum_of_light(world, number);
-        let factor = self.coloured(white, brought.colour) * (f64::from(trials) / (probability * kept * made));
-        if let Some(stokes) = brought.stokes {
-            self.polarisation.record(stokes.map(|s| s * factor));
-        }
-        let found = self.gather(brought.light * factor);
-        observer.light(self.vertex, Found::SpecularConnection { light: number }, found);
+        Some((brought, f64::from(trials) / kept))
+    }
+
+    /// Where a search begins that is drawn.
+    fn seed<'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
+        &self,
+        trial: u32,
+        chain: &mut Chain<'_, 'a, V, M, P, N>,
+        counters: &mut Counters,
+    ) -> Option<Seed> {
+        let u = self.numbers.of_seed(trial);
+        let Some(lamp_ray) = self.connections.lamp_ray(self.from, self.light, &self.source, &u) else {
+            let direction = self.connections.direction(self.from, &self.source, &u);
+            return Some(Seed { direction, chooses: Chooses::By(u.vertices) });
+        };
+        let (last, vertices) = chain.of_lamp(&lamp_ray, counters)?;
+        let way = last - self.from;
+        Some(Seed { direction: way / way.length(), chooses: Chooses::This(vertices) })
     }
 }

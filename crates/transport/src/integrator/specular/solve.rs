@@ -37,16 +37,27 @@ pub(super) enum Chooses {
     By(f64),
     /// This number.
     This(u32),
+    /// That after which the chain points most nearly at the lamp.
+    Nearest,
 }
 
 /// A direction in which a chain points at a lamp.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Root {
     pub wi: Vec3<f64>,
-    /// Vertices of the chain.
+    /// Vertices of the chain, and through which of them it goes: a bit of each, of the last 64.
     pub vertices: u32,
+    pub passes: u64,
     /// det ∂r/∂ω.
     pub determinant: f64,
+}
+
+impl Root {
+    /// Whether it is this root, of this chain.
+    pub(super) fn is(&self, other: &Self) -> bool {
+        (self.vertices, self.passes) == (other.vertices, other.passes)
+            && (self.wi - other.wi).length_squared() < SAME * SAME
+    }
 }
 
 /// A direction beside a root.
@@ -72,6 +83,8 @@ struct End {
     surfaces: u64,
     /// Whether the chain has only passed panes: its light comes by a shadow ray.
     is_straight: bool,
+    /// See [`Root::passes`].
+    passes: u64,
 }
 
 impl End {
@@ -138,7 +151,7 @@ impl<'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: usiz
             return None;
         }
         let [[ss, st], [ts, tt]] = derivative;
-        Some(Root { wi: beside(&at, step), vertices, determinant: ss * tt - st * ts })
+        Some(Root { wi: beside(&at, step), vertices, passes: end.passes, determinant: ss * tt - st * ts })
     }
 
     /// Comes so near to a root that one more step of Newton's method finds it.
@@ -222,6 +235,7 @@ impl<'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: usiz
         let u = match seed.chooses {
             Chooses::By(u) => u,
             Chooses::This(vertices) => return Some(vertices),
+            Chooses::Nearest => 0.0,
         };
         let mut chances = Vec::new();
         let mut before: Option<(Vec3<f64>, f64)> = None;
@@ -231,11 +245,16 @@ impl<'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: usiz
             {
                 *chance *= BLOCKED;
             }
-            let end = End { position: link.position, direction: link.direction, surfaces: 0, is_straight: false };
+            let end =
+                End { position: link.position, direction: link.direction, surfaces: 0, is_straight: false, passes: 0 };
             before = Some((link.position, source.distance(link.position)));
             chances.push(1.0 / (end.miss(source).length_squared() + NEAR));
             true
         });
+        if matches!(seed.chooses, Chooses::Nearest) {
+            let last = (0..chances.len()).max_by(|a, b| chances[*a].total_cmp(&chances[*b]));
+            return last.map(|last| last as u32 + 1);
+        }
         let mut left = u * chances.iter().sum::<f64>();
         let chosen = chances.iter().position(|chance| {
             left -= chance;
@@ -247,13 +266,14 @@ impl<'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: usiz
 
     /// Where the chain in a direction is after some vertices.
     fn end(&mut self, wi: Vec3<f64>, vertices: u32, counters: &mut Counters) -> Option<End> {
-        let (mut count, mut surfaces, mut is_straight, mut end) = (0, 0, true, None);
+        let (mut count, mut surfaces, mut is_straight, mut passes, mut end) = (0, 0, true, 0, None);
         self.follow(wi, counters, |link| {
             count += 1;
             surfaces = with(surfaces, link.surface);
             is_straight &= link.passes_pane;
+            passes = passes << 1 | u64::from(link.passes);
             if count == vertices {
-                end = Some(End { position: link.position, direction: link.direction, surfaces, is_straight });
+                end = Some(End { position: link.position, direction: link.direction, surfaces, is_straight, passes });
             }
             count < vertices
         });

@@ -44,8 +44,18 @@ pub(super) struct ChainVertex<'a, const N: usize> {
 #[derive(Clone, Copy)]
 pub(super) struct LobeChoice {
     pub numbers: NumberStream,
-    /// Whether it is refracted wherever it can be, whatever the numbers say.
-    pub refracts: bool,
+    pub lobes: Lobes,
+}
+
+/// Which lobe light takes where some is reflected and some passes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Lobes {
+    /// As the numbers say.
+    Drawn,
+    /// That of what passes, wherever some does; elsewhere as the numbers say.
+    Refracted,
+    /// The same. A vertex where the numbers would decide ends the chain, so that nothing is drawn.
+    Sure,
 }
 
 impl<'a> Scout<'a> {
@@ -104,7 +114,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Walker<'a, M
     ) -> Option<ChainVertex<'a, N>> {
         let Self { path: walker, asks_media, .. } = self;
         let [mut u_lobe, u1, u2, mut u_mask] = choice.numbers.set(u64::from(number));
-        if choice.refracts {
+        if choice.lobes != Lobes::Drawn {
             u_lobe = 1.0_f64.next_down();
         }
         let (mut weight, mut start) = (Lanes::ONE, ray.origin);
@@ -132,6 +142,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Walker<'a, M
             if let Some(reflectance) = walker.reflection_probability(world, &met) {
                 // The same choice from wherever the chain comes, so that Newton's method finds its root from afar: the first lobe or the last.
                 let (reflects, probability) = match reflectance < 1.0 {
+                    true if choice.lobes == Lobes::Sure => (false, 1.0 - reflectance),
                     true if u_lobe < REFLECTS => (true, reflectance / REFLECTS),
                     true => (false, (1.0 - reflectance) / (1.0 - REFLECTS)),
                     false => (true, 1.0),
@@ -145,6 +156,9 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Walker<'a, M
                     walker.sample_direction(world, &met, [u_lobe, u1, u2], &mut ())?
                 }
                 BsdfKind::General => {
+                    if choice.lobes == Lobes::Sure && !met.is_glass(world) {
+                        return None;
+                    }
                     let lambda_nm = &walker.wavelengths.lambda_nm;
                     let sample = met.scattering().sample(lambda_nm, met.wo, [u_lobe, u1, u2])?;
                     if sample.density != Density::Delta {
