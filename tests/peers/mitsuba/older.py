@@ -11,15 +11,19 @@ FILTERS = ("nearest", "bilinear")
 
 def load(mi, scene, given, folder):
     """The scene as it is; if Mitsuba refuses it, a copy in a folder without what it does not know and light transport does not need."""
+    # What it does not read, it does not always refuse.
+    is_old = re.search(r"<scene\s+version=[\"']0\.", scene.read_text(errors="replace"))
     try:
-        return mi.load_file(str(scene), **given)
+        if not is_old:
+            return mi.load_file(str(scene), **given)
+        refusal = None
     except Exception as error:  # whatever Mitsuba throws
         refusal = error
     mi.file_resolver().prepend(str(scene.parent))
     config = mi.parser.ParserConfig(mi.variant())
     config.unused_properties = config.unused_parameters = mi.LogLevel.Debug
     copy = folder / f"{scene.stem}-for-mitsuba.xml"
-    for file in (scene, copy):
+    for file in (copy,) if is_old else (scene, copy):
         try:
             if file is copy:
                 copy.write_text(edited(scene.read_text(errors="replace")))
@@ -54,9 +58,28 @@ def edited(text):
             elif child.tag == "srgb":
                 child.tag = "rgb"
                 child.set("value", " ".join(str(linear(float(part))) for part in value.replace(",", " ").split()))
+            elif child.tag == "medium":
+                extinction(child)
             elif child.get("name") in ("filterType", "filter_type") and value not in FILTERS or parent.tag == "film" and "ormat" in (child.get("name") or ""):
                 parent.remove(child)
     return ET.tostring(root, encoding="unicode")
+
+
+def extinction(medium):
+    """Absorption and scattering as an extinction and an albedo; a density as an extinction."""
+    stated = {of.get("name"): of for of in medium}
+    if "density" in stated:
+        stated["density"].set("name", "sigma_t")
+    if not {"sigmaA", "sigmaS"} & set(stated):
+        return
+    values = [[float(part) for part in stated[name].get("value").replace(",", " ").split()] if name in stated else [0.0] for name in ("sigmaA", "sigmaS")]
+    absorbed, scattered = (value * 3 if len(value) == 1 else value for value in values)
+    for name in ("sigmaA", "sigmaS"):
+        if name in stated:
+            medium.remove(stated[name])
+    sums = [a + s for a, s in zip(absorbed, scattered)]
+    ET.SubElement(medium, "rgb", name="sigma_t", value=" ".join(map(str, sums)))
+    ET.SubElement(medium, "rgb", name="albedo", value=" ".join(str(s / e if e else 0.0) for s, e in zip(scattered, sums)))
 
 
 def linear(signal):

@@ -62,7 +62,7 @@ impl<'a> Walk<'a, '_, '_> {
             self.builder.leave_out(place, "only the first sensor is used");
             return Ok(());
         }
-        if let Some(medium) = self.medium(element, "medium")? {
+        if let Some(medium) = self.medium_around(element)? {
             self.builder.surround(medium, &place);
         }
         let aspect = self.film(element)?;

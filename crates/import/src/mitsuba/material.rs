@@ -178,7 +178,12 @@ impl Walk<'_, '_, '_> {
     pub(super) fn material(&mut self, element: &Element, plugin: &str) -> Result<Value, String> {
         let place = &element.place;
         let mut material = match plugin {
-            "diffuse" => {
+            "diffuse" | "roughdiffuse" => {
+                if plugin == "roughdiffuse" {
+                    let what = "what is rough and diffuse becomes diffuse: its edge, seen against the light, is darker";
+                    self.builder.approximate(place, what);
+                    element.property("alpha");
+                }
                 let reflectance = self.colour(element, "reflectance", Of::Texture)?.unwrap_or(json!(0.5));
                 json!({ "type": "lambert", "reflectance": reflectance })
             }
@@ -235,7 +240,14 @@ impl Walk<'_, '_, '_> {
         // What reflects only is black from behind there.
         if matches!(
             plugin,
-            "diffuse" | "conductor" | "roughconductor" | "plastic" | "roughplastic" | "pplastic" | "measured"
+            "diffuse"
+                | "roughdiffuse"
+                | "conductor"
+                | "roughconductor"
+                | "plastic"
+                | "roughplastic"
+                | "pplastic"
+                | "measured"
         ) {
             material["sides"] = json!("front");
         }

@@ -35,6 +35,12 @@ impl<'a> Walk<'a, '_, '_> {
         self.within(medium, |walk| walk.read_medium(medium)).map(Some)
     }
 
+    /// The medium that a sensor is in: whatever it is called.
+    pub(super) fn medium_around(&mut self, sensor: &'a Element) -> Result<Option<Value>, String> {
+        let Some(medium) = sensor.nested("medium", self.ids)?.first().copied() else { return Ok(None) };
+        self.within(medium, |walk| walk.read_medium(medium)).map(Some)
+    }
+
     fn read_medium(&mut self, element: &'a Element) -> Result<Value, String> {
         let place = &element.place;
         let scale = element.number("scale")?.unwrap_or(1.0);

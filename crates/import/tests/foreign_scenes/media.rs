@@ -207,3 +207,18 @@ AttributeEnd
     assert_eq!(scene.materials[scene.objects[0].material].kind, MaterialKind::Boundary { priority: None });
     assert_eq!(said(&imported), Vec::<String>::new());
 }
+
+/// A sensor has one medium, with a name or without.
+#[test]
+fn a_medium_that_a_sensor_refers_to_is_around_all_bodies() {
+    for stated in [r#"<ref id="fog"/>"#, r#"<ref name="medium" id="fog"/>"#] {
+        let text = format!(
+            r#"<scene version="3.0.0"><medium type="homogeneous" id="fog"><float name="sigma_t" value="2"/></medium>
+<sensor type="perspective">{stated}</sensor><shape type="sphere"/></scene>"#
+        );
+        let imported = imported("xml", &text);
+        let around = scene(&imported).medium.unwrap_or_else(|| panic!("{stated}"));
+        near(coefficients(&around, 500.0), [0.5, 1.5]);
+        assert!(said(&imported).is_empty(), "{:?}", said(&imported));
+    }
+}
