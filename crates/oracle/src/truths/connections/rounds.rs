@@ -166,7 +166,7 @@ impl Round {
         Scene::light_meter()
             .object(shape, if self.mirrors { mirror(0.9) } else { glass(INDEX) })
             .directional_light([0.0, 0.0, -1.0], 1.0)
-            .spp(1 << 10)
+            .spp(1 << 7)
     }
 
     fn truth(self, name: &str, formula: &str, because: &'static str) -> Truth {

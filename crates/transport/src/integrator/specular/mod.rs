@@ -12,7 +12,7 @@
 //! 1. Numbers are drawn once that choose the lamp, how long the chain may be, and the lobe at each of its vertices. They stay the same from now
 //!    on, so the chain is a function of ω. That a lobe was chosen is accounted for in W, as on any path.
 //! 2. A direction is drawn and improved by Newton's method until the chain points at the lamp ([`solve`]).
-//! 3. One search begins straight toward the lamp, and its chain is refracted wherever it can be. Nothing about it is drawn, so the root that it
+//! 3. One search begins straight toward the lamp, or where the axis of a beam comes from, and its chain is refracted wherever it can be. Nothing about it is drawn, so the root that it
 //!    leads to counts as it is.
 //! 4. Any other root is found with a probability p that nobody knows. Further directions are drawn, and improved in the same way, until one leads to
 //!    the same root. Their number has the mean 1/p, and multiplies what the root brings (Zeltner, Georgiev & Jakob 2020, *Specular Manifold
@@ -38,6 +38,7 @@ use crate::polarisation::Polarisation;
 use crate::sampler::{NumberStream, Sampler};
 use crate::scene::world::World;
 use chain::{Brought, Chain};
+use etalon_geometry::Ray;
 use etalon_optics::Vec3;
 pub(crate) use passed_beam::PassedBeams;
 use solve::{Chooses, Root, Seed};
@@ -167,9 +168,13 @@ impl Search<'_> {
         mut chain: Chain<'_, 'a, V, M, P, N>,
         counters: &mut Counters,
     ) -> [Option<(Brought<N>, f64)>; 2] {
-        let straight = Seed { direction: self.source.toward(self.from), chooses: Chooses::Nearest };
         chain.choose(Lobes::Sure);
-        let sure = chain.solve(&straight, &self.source, counters);
+        let seed = match self.light {
+            // A prism turns a beam far aside: its axis says where it comes from.
+            Light::Beam(beam) => self.seed_by(&beam.ray([0.0; 2]), &mut chain, counters),
+            _ => Some(Seed { direction: self.source.toward(self.from), chooses: Chooses::Nearest }),
+        };
+        let sure = seed.and_then(|seed| chain.solve(&seed, &self.source, counters));
         let first = sure.as_ref().and_then(|root| chain.bring(root, self.light, counters));
         chain.choose(Lobes::Drawn);
         [first.map(|brought| (brought, 1.0)), self.drawn(&mut chain, sure.as_ref(), counters)]
@@ -217,7 +222,17 @@ impl Search<'_> {
             let direction = self.connections.direction(self.from, &self.source, &u);
             return Some(Seed { direction, chooses: Chooses::By(u.vertices) });
         };
-        let (last, vertices) = chain.of_lamp(&lamp_ray, counters)?;
+        self.seed_by(&lamp_ray, chain, counters)
+    }
+
+    /// Toward the last vertex of the chain that a ray of the lamp follows.
+    fn seed_by<'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
+        &self,
+        lamp_ray: &Ray<f64>,
+        chain: &mut Chain<'_, 'a, V, M, P, N>,
+        counters: &mut Counters,
+    ) -> Option<Seed> {
+        let (last, vertices) = chain.of_lamp(lamp_ray, counters)?;
         let way = last - self.from;
         Some(Seed { direction: way / way.length(), chooses: Chooses::This(vertices) })
     }
