@@ -78,7 +78,12 @@ def extinction(medium):
         if name in stated:
             medium.remove(stated[name])
     sums = [a + s for a, s in zip(absorbed, scattered)]
-    ET.SubElement(medium, "rgb", name="sigma_t", value=" ".join(map(str, sums)))
+    # A colour of more than 1 is refused there: the scale has the size.
+    size = max(*sums, 1e-9)
+    if "scale" not in stated:
+        stated["scale"] = ET.SubElement(medium, "float", name="scale", value="1")
+    stated["scale"].set("value", str(float(stated["scale"].get("value")) * size))
+    ET.SubElement(medium, "rgb", name="sigma_t", value=" ".join(str(e / size) for e in sums))
     ET.SubElement(medium, "rgb", name="albedo", value=" ".join(str(s / e if e else 0.0) for s, e in zip(scattered, sums)))
 
 

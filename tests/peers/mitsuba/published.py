@@ -11,7 +11,8 @@ something polarises, in its polarised one. Two pictures agree if for one of the 
 
 - the mean of each channel differs by at most 4 standard errors or by at most 0.5 %, and
 - the mean of z² is below 1.6 over blocks of 4 × 4 pixels and below 2.2 over blocks of 8 × 8, or the difference beyond noise is at most 0.5 % of
-  the mean.
+  the mean, and
+- the standard errors of the means are at most 2 %: of noisier pictures nothing can be said.
 
 Mitsuba's spectral variants interpolate the brightness and the colour of a sky's texels apart. Where two pictures differ under the image of a sky, Mitsuba
 renders once more with a sky that it need not interpolate: an image of 5 × 5 texels for each texel (3 × 3 of large ones), which are interpolated beforehand. Pictures
@@ -45,6 +46,8 @@ OPEN = re.compile(r"\$(\w+)")
 DEFAULTS = re.compile(r"""<default\s+name=["'](\w+)""")
 # Mean z² over blocks of so many pixels, at most.
 MOST_SQUARES = {4: 1.6, 8: 2.2}
+# Standard errors of means, relative, above which no picture agrees.
+NOISY = 0.02
 
 
 def keys_of_skies(params):
@@ -130,9 +133,11 @@ def judge(ours, passes):
         z2[side] = round(float(max(found, default=0)), 2)
     square = [(off**2 - variance).mean() for off, variance in differences(ours, passes, 4)]
     beyond = max(np.sqrt(max(square, 0)) / mean if mean else 0 for square, (_, _, mean) in zip(square, means))
-    agree = close and (all(z2[side] < most for side, most in MOST_SQUARES.items()) or beyond <= SMALL)
+    sharp = all(error <= NOISY * abs(mean) for _, error, mean in means)
+    agree = close and sharp and (all(z2[side] < most for side, most in MOST_SQUARES.items()) or beyond <= SMALL)
     ratios = [round(1 + off / mean, 4) if mean else None for off, _, mean in means]
-    return {"agree": bool(agree), "means": ratios, "beyond": round(float(beyond), 4), "z2": z2}
+    errors = [round(error / abs(mean), 4) if mean else None for _, error, mean in means]
+    return {"agree": bool(agree), "means": ratios, "errors": errors, "beyond": round(float(beyond), 4), "z2": z2}
 
 
 def compared(mi, scene, stem, args):
