@@ -52,6 +52,7 @@ const PARTS: &[&str] = &[
     "bench/race/worker.py",
     "tests/peers/mitsuba/cases.py",
     "tests/peers/mitsuba/files.py",
+    "tests/peers/mitsuba/older.py",
     "tests/view/browser.py",
     "tests/view/controls.py",
     "tests/view/measure.py",
