@@ -10,6 +10,12 @@ use crate::matrix::steps;
 use crate::medium::{blended, in_unit_box, means, shares, vol, without_colour};
 use crate::{coefficient, reflectance};
 
+/// What version 0.x says of a medium, for three channels.
+struct Parts {
+    albedo: [f64; 3],
+    extinction: [f64; 3],
+}
+
 /// What a grid says of a medium.
 struct Grid {
     /// Numbers, from place to place.
@@ -53,17 +59,16 @@ impl<'a> Walk<'a, '_, '_> {
             },
         }
         let parts = self.parts_of_extinction(element)?;
-        made["extinction_per_m"] = match element.plugin() {
-            "homogeneous" if parts.is_some() => {
-                let (albedo, extinction) = parts.unwrap_or_default();
+        made["extinction_per_m"] = match (element.plugin(), parts) {
+            ("homogeneous", Some(Parts { albedo, extinction })) => {
                 made["albedo"] = reflectance(albedo);
                 coefficient(extinction.map(|v| v * scale))
             }
-            "homogeneous" => match element.property("sigma_t") {
+            ("homogeneous", None) => match element.property("sigma_t") {
                 None => json!(scale),
                 Some(stated) => times(self.uniform(stated, Of::Coefficient)?, scale),
             },
-            "heterogeneous" => {
+            ("heterogeneous", _) => {
                 // In version 0.x the extinction is the density times the scale.
                 let stated = element.property("sigma_t").or_else(|| element.property("density"));
                 let stated = stated.ok_or_else(|| format!("{place}: it has no \"sigma_t\""))?;
@@ -78,7 +83,7 @@ impl<'a> Walk<'a, '_, '_> {
                     }
                 }
             }
-            other => return Err(format!("{place}: the medium \"{other}\" is not known")),
+            (other, _) => return Err(format!("{place}: the medium \"{other}\" is not known")),
         };
         if let Some(phase) = element.nested("phase", self.ids)?.first() {
             made["phase"] = self.phase(phase)?;
@@ -92,7 +97,7 @@ impl<'a> Walk<'a, '_, '_> {
     }
 
     /// What version 0.x states by absorption and scattering: the albedo and the extinction of three channels.
-    fn parts_of_extinction(&mut self, element: &'a Element) -> Result<Option<([f64; 3], [f64; 3])>, String> {
+    fn parts_of_extinction(&mut self, element: &'a Element) -> Result<Option<Parts>, String> {
         let read = |name: &str| -> Result<Option<[f64; 3]>, String> {
             let Some(stated) = element.property(name) else { return Ok(None) };
             let text = stated.attribute("value").unwrap_or("");
@@ -109,7 +114,7 @@ impl<'a> Walk<'a, '_, '_> {
         let [absorbed, scattered] = [absorbed, scattered].map(Option::unwrap_or_default);
         let extinction: [f64; 3] = std::array::from_fn(|i| absorbed[i] + scattered[i]);
         let albedo = std::array::from_fn(|i| if extinction[i] > 0.0 { scattered[i] / extinction[i] } else { 0.0 });
-        Ok(Some((albedo, extinction)))
+        Ok(Some(Parts { albedo, extinction }))
     }
 
     /// The density of what is the same everywhere in its volume: there, too, such a medium ends at the box from 0 to 1 of that volume.
