@@ -52,6 +52,7 @@ mod table;
 mod translucent;
 mod uv;
 mod vertex_colours;
+mod winding;
 
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};

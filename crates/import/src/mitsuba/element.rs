@@ -24,7 +24,7 @@ const MAX_FOLDERS: usize = 32;
 #[derive(Debug)]
 pub(super) struct Element {
     pub tag: String,
-    pub(super) attributes: HashMap<String, String>,
+    attributes: HashMap<String, String>,
     pub children: Vec<Element>,
     /// The line, and the file if it is not the scene itself.
     pub place: String,

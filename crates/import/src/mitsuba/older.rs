@@ -11,18 +11,12 @@ pub(super) fn upgrade(element: &mut Element) {
         element.set("name", name);
     }
     element.children.iter_mut().for_each(upgrade);
-    match element.tag.as_str() {
-        "bsdf" => {
-            for child in
-                element.children.iter_mut().filter(|child| child.attribute("name") == Some("diffuse_reflectance"))
-            {
-                if matches!(element.attributes.get("type").map(String::as_str), Some("diffuse" | "roughdiffuse")) {
-                    child.set("name", "reflectance".to_owned());
-                }
-            }
-        }
-        "texture" => scale_coordinates(element),
-        _ => {}
+    if element.tag == "bsdf" && matches!(element.plugin(), "diffuse" | "roughdiffuse") {
+        let is_long = |child: &&mut Element| child.attribute("name") == Some("diffuse_reflectance");
+        element.children.iter_mut().filter(is_long).for_each(|child| child.set("name", "reflectance".to_owned()));
+    }
+    if element.tag == "texture" {
+        scale_coordinates(element);
     }
 }
 

@@ -17,12 +17,13 @@ use crate::medium::fill;
 use crate::number::{WITHOUT_DIRECTIONS, has_image, has_measured_grain, without_directions};
 use crate::relief::without_map;
 use crate::vertex_colours::{self, attribute_of};
+use crate::winding::turn_to_normals;
 
 /// A mesh file, as files of the scene.
 #[derive(Debug)]
 pub(super) struct Mesh {
     parts: Vec<MeshPart>,
-    /// Whether the file asks for the normals of its faces.
+    /// Whether the file or its shape asks for the normals of its faces.
     flat: bool,
 }
 
@@ -203,8 +204,9 @@ impl<'a> Walk<'a, '_, '_> {
         };
         let flip_v = element.flag("flip_tex_coords")?.unwrap_or(format == MeshFormat::Obj);
         let attribute = attribute_of(&dressed.look.material);
-        let mesh = self.read_mesh(&file, (format, flip_v, attribute.as_ref()), place)?;
-        let flat = element.flag("face_normals")?.unwrap_or(false) || mesh.flat;
+        let flat = element.flag("face_normals")?.unwrap_or(false);
+        let mesh = self.read_mesh(&file, (format, flip_v, flat, attribute.as_ref()), place)?;
+        let flat = mesh.flat;
         for part in &mesh.parts {
             let mut dressed = dressed.clone();
             if let Some(name) = part.name.as_ref().filter(|_| mesh.parts.len() > 1) {
@@ -244,23 +246,22 @@ impl<'a> Walk<'a, '_, '_> {
     fn read_mesh(
         &mut self,
         file: &str,
-        (format, flip_v, attribute): (MeshFormat, bool, Option<&(String, f64)>),
+        (format, flip_v, mut flat, attribute): (MeshFormat, bool, bool, Option<&(String, f64)>),
         place: &str,
     ) -> Result<Rc<Mesh>, String> {
-        let key = format!("{flip_v} {format:?} {attribute:?} {file}");
+        let key = format!("{flip_v} {flat} {format:?} {attribute:?} {file}");
         if let Some(mesh) = self.meshes.get(&key) {
             return Ok(mesh.clone());
         }
         let bytes = self.builder.bytes_of(file, place)?;
         let refused = |why: &dyn std::fmt::Display| format!("{place}: \"{file}\": {why}");
-        let mut flat = false;
         let parts: Vec<Part> = match format {
             // Materials of MTL are not asked for: the scene has its own.
             MeshFormat::Obj => read_obj(&bytes, |_| Ok(Vec::new())).map_err(|error| refused(&error))?.parts,
             MeshFormat::Ply => vec![read_ply(&bytes).map_err(|error| refused(&error))?],
             MeshFormat::Serialized(index) => {
                 let (part, of_faces) = serialized::read(&bytes, index).map_err(|why| refused(&why))?;
-                flat = of_faces;
+                flat |= of_faces;
                 vec![part]
             }
         };
@@ -268,6 +269,9 @@ impl<'a> Walk<'a, '_, '_> {
         for mut part in parts {
             for what in &part.left_out {
                 self.builder.leave_out(place, format!("\"{file}\": {what}"));
+            }
+            if !flat {
+                turn_to_normals(&mut part.mesh);
             }
             if flip_v {
                 part.mesh.uvs.iter_mut().for_each(|uv| uv[1] = 1.0 - uv[1]);

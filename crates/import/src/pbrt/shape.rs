@@ -16,6 +16,7 @@ use crate::medium::fill;
 use crate::number::{Number, WITHOUT_DIRECTIONS, has_directions, has_image, without_directions};
 use crate::relief::{has_map, without_map};
 use crate::round::{DISK_OF_TRIANGLES, disk, sphere_turn};
+use crate::winding::turn_to_normals;
 
 /// Two corners of a box.
 type Reach = [[f64; 3]; 2];
@@ -48,8 +49,9 @@ impl Reading<'_, '_> {
                 (value, [[-radius, -radius, low], [radius, radius, high]], false)
             }
             "trianglemesh" | "bilinearmesh" => {
-                let mesh = if shape == "trianglemesh" { triangles(list, place)? } else { self.patches(list, place)? };
-                self.file_of(&mesh)
+                let mut mesh =
+                    if shape == "trianglemesh" { triangles(list, place)? } else { self.patches(list, place)? };
+                self.file_of(&mut mesh)
             }
             "plymesh" => {
                 let file =
@@ -188,13 +190,14 @@ impl Reading<'_, '_> {
         for what in &part.left_out {
             self.builder.leave_out(place, format!("\"{file}\": {what}"));
         }
-        let made = self.file_of(&part.mesh);
+        let made = self.file_of(&mut part.mesh);
         self.meshes.insert(file.to_owned(), made.clone());
         Ok(made)
     }
 
-    /// A mesh as a file, the box around it, and whether it has texture coordinates.
-    fn file_of(&mut self, mesh: &Mesh) -> Placeable {
+    /// A mesh as a file, after its normals have said which side is its front, the box around it, and whether it has texture coordinates.
+    fn file_of(&mut self, mesh: &mut Mesh) -> Placeable {
+        turn_to_normals(mesh);
         let first = mesh.vertices.first().copied().unwrap_or([0.0; 3]);
         let reach = mesh.vertices.iter().fold([first, first], |[low, high], v| {
             [std::array::from_fn(|k| low[k].min(v[k])), std::array::from_fn(|k| high[k].max(v[k]))]

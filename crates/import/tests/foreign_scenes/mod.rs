@@ -56,6 +56,7 @@ fn near(name: &str) -> Result<Vec<u8>, String> {
         "bare.ply" => Ok(BARE.to_vec()),
         "a.obj" => Ok(OBJ.to_vec()),
         "flat.obj" => Ok(b"v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n".to_vec()),
+        "turned.obj" => Ok(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 -1\nf 1//1 2//1 3//1\n".to_vec()),
         "normals.obj" => Ok(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//1 3//1\n".to_vec()),
         "smoke.vol" => Ok(vol(1, &[0.5, 1.5])),
         "coloured.vol" => Ok(vol(3, &[0.75, 0.375, 0.0, 0.375, 0.375, 0.0])),

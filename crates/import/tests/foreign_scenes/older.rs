@@ -80,3 +80,17 @@ fn absorption_and_scattering_are_an_extinction_and_an_albedo() {
     );
     assert!(said(&imported).iter().all(|what| !what.contains("ignored")), "{:?}", said(&imported));
 }
+
+#[test]
+fn what_is_rough_and_diffuse_becomes_diffuse() {
+    let text = r#"<scene version="0.5.0"><sensor type="perspective"/><shape type="sphere"><bsdf type="roughdiffuse">
+  <rgb name="diffuseReflectance" value="0.3"/><float name="alpha" value="0.4"/></bsdf></shape></scene>"#;
+    let imported = imported("xml", text);
+    let kind = scene(&imported).materials[0].kind.clone();
+    let MaterialKind::Lambert { reflectance: SpectrumTexture::Uniform(spectrum) } = on_its_side(&kind) else {
+        panic!("{kind:?}")
+    };
+    assert!((spectrum.eval(550.0) - 0.3).abs() < 1e-3);
+    let said = said(&imported);
+    assert!(said.len() == 1 && said[0].contains("becomes diffuse"), "{said:?}");
+}

@@ -1,6 +1,6 @@
 //! Materials that Mitsuba has on one side.
 
-use etalon_scene::{MaterialKind, Side};
+use etalon_scene::{MaterialKind, Shape, Side};
 
 use super::{imported, scene};
 
@@ -49,5 +49,35 @@ fn the_parts_of_a_blend_have_sides_of_their_own() {
         ));
         let MaterialKind::Blend { parts, .. } = &kind else { panic!("{kind:?}") };
         assert_eq!((side(&parts[0].1), side(&parts[1].1)), (Some(expected), None));
+    }
+}
+
+/// The front is where the normals of the vertices point, whichever way round the corners go. With normals of faces, the corners decide.
+#[test]
+fn normals_say_which_side_of_a_mesh_is_its_front() {
+    let up = |kind: &str, text: &str| {
+        let scene = scene(&imported(kind, text));
+        let Shape::Mesh(mesh) = &scene.objects[0].shape else { panic!("a mesh") };
+        let [a, b, c] = mesh.triangles[0].map(|i| mesh.vertices[i as usize]);
+        (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) > 0.0
+    };
+    for (file, flat, is_up) in [
+        ("normals.obj", "false", true),
+        ("turned.obj", "false", false),
+        ("turned.obj", "true", true),
+        ("a.obj", "false", true),
+    ] {
+        let text = format!(
+            r#"<scene version="3.0.0"><sensor type="perspective"/><shape type="obj"><string name="filename" value="{file}"/>
+<boolean name="face_normals" value="{flat}"/></shape></scene>"#
+        );
+        assert_eq!(up("xml", &text), is_up, "{file} {flat}");
+    }
+    for (z, is_up) in [(1, true), (-1, false)] {
+        let text = format!(
+            "Scale -1 1 1\nWorldBegin\nShape \"trianglemesh\" \"integer indices\" [0 1 2] \"point3 P\" [0 0 0 1 0 0 0 1 0] \
+             \"normal N\" [0 0 {z} 0 0 {z} 0 0 {z}]"
+        );
+        assert_eq!(up("pbrt", &text), is_up, "{z}");
     }
 }
