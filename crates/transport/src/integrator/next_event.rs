@@ -15,7 +15,7 @@ use crate::scene::shading_tables::BsdfKind;
 use crate::scene::world::World;
 use crate::spectral::Colour;
 use etalon_geometry::{Ray, SurfacePoint};
-use etalon_optics::Lanes;
+use etalon_optics::{Lanes, Vec3};
 use etalon_scene::LightSampling;
 
 /// A direction toward a light that was chosen.
@@ -203,6 +203,21 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         }
         counters.record_cut(f64::MAX);
         Visibility { share: 0.0, transmittance: None }
+    }
+
+    /// What the medium along a way lets through up to the surface that it has met, or else up to a length. The path is in that medium then.
+    pub(super) fn transmittance_to(
+        &mut self,
+        world: &World<'a>,
+        (origin, direction): (Vec3<f64>, Vec3<f64>),
+        met: Option<&SurfaceInteraction<'a>>,
+        otherwise: f64,
+    ) -> Lanes<f64, N> {
+        if let Some(met) = met {
+            self.stack.meet(met.surface.interior(), met.meets_front());
+        }
+        let length = met.map_or(otherwise, |met| (met.point.position - origin).length());
+        self.transmittance(world, &self.stack, &Way { origin, direction, length })
     }
 
     pub(super) fn transmittance(&self, world: &World<'a>, stack: &MediumStack<'a>, way: &Way) -> Lanes<f64, N> {

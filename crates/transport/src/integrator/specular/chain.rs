@@ -6,14 +6,14 @@ use crate::film::Counters;
 use crate::integrator::vertex::Vertex;
 use crate::integrator::wavelength_lanes::WavelengthModel;
 use crate::integrator::{MOST_VERTICES, Path};
-use crate::light::Light;
+use crate::light::{Light, Source};
 use crate::media::MediumStack;
 use crate::polarisation::Polarisation;
 use crate::sampler::NumberStream;
 use crate::scene::world::World;
 use crate::spectral::Colour;
 use etalon_geometry::{Ray, SurfaceId};
-use etalon_optics::{Lanes, Vec3};
+use etalon_optics::{Frame, Lanes, Vec3};
 
 /// Vertices that every chain may have, and the probability of each further one.
 const SURE_VERTICES: u32 = 8;
@@ -56,6 +56,21 @@ pub(super) struct Link {
     pub passes: bool,
     /// Whether it is a pane that the chain passes, which shadow rays do too.
     pub passes_pane: bool,
+}
+
+impl Link {
+    /// The part of the lamp's direction that is at right angles to the chain's: its length is the sine of the angle between them. Beyond a right
+    /// angle it is 2 less the sine, so that it grows with the angle.
+    pub(super) fn miss(&self, source: &Source) -> Vec3<f64> {
+        let toward = source.toward(self.position);
+        let cos = toward.dot(self.direction);
+        let across = toward - self.direction * cos;
+        if cos >= 0.0 {
+            return across;
+        }
+        let sin = across.length();
+        if sin > 0.0 { across * ((2.0 - sin) / sin) } else { Frame::from_normal(self.direction).s * 2.0 }
+    }
 }
 
 impl<'c, 'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Chain<'c, 'a, V, M, P, N> {

@@ -11,9 +11,9 @@
 //!
 //! 1. Numbers are drawn once that choose the lamp, how long the chain may be, and the lobe at each of its vertices. They stay the same from now
 //!    on, so the chain is a function of ω. That a lobe was chosen is accounted for in W, as on any path.
-//! 2. A direction is drawn and improved by Newton's method until the chain points at the lamp ([`solve`]).
-//! 3. One search begins straight toward the lamp, or where the axis of a beam comes from, and its chain is refracted wherever it can be. Nothing about it is drawn, so the root that it
-//!    leads to counts as it is.
+//! 2. A direction is drawn, and improved by Newton's method until the chain points at the lamp ([`solve`]).
+//! 3. One search is not drawn. It begins straight toward the lamp, or where the axis of a beam comes from. Its chain is refracted wherever it can
+//!    be. So the root that it leads to counts as it is.
 //! 4. Any other root is found with a probability p that nobody knows. Further directions are drawn, and improved in the same way, until one leads to
 //!    the same root. Their number has the mean 1/p, and multiplies what the root brings (Zeltner, Georgiev & Jakob 2020, *Specular Manifold
 //!    Sampling*, §4.3). A root that brings nothing needs none of them.
@@ -162,7 +162,7 @@ struct Search<'s> {
 }
 
 impl Search<'_> {
-    /// What is found of the lamp, and what it is to be multiplied by: along the chain that can be told without drawing it, and along one more.
+    /// What comes from the lamp, and its weight: along the chain that is not drawn, and along one that is.
     fn roots<'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
         &self,
         mut chain: Chain<'_, 'a, V, M, P, N>,

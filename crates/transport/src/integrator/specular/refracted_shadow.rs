@@ -21,7 +21,6 @@ use crate::integrator::vertex::Vertex;
 use crate::integrator::wavelength_lanes::WavelengthModel;
 use crate::integrator::{Direction, LightDraw, MOST_VERTICES, Path};
 use crate::light::Emitter;
-use crate::media::Way;
 use crate::mis::{Density, power_heuristic};
 use crate::polarisation::Polarisation;
 use crate::sampler::Sampler;
@@ -140,15 +139,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             counters.rays += 1;
             let met = world.intersect(&ray, &mut walker.walk, &mut walker.stack, counters);
             if world.participating.is_some() {
-                if let Some(met) = &met {
-                    walker.stack.meet(met.surface.interior(), met.meets_front());
-                }
-                let length = met.as_ref().map_or(f64::INFINITY, |met| (met.point.position - start).length());
-                left *= walker.transmittance(
-                    world,
-                    &walker.stack,
-                    &Way { origin: start, direction: ray.direction, length },
-                );
+                left *= walker.transmittance_to(world, (start, ray.direction), met.as_ref(), f64::INFINITY);
                 let survival = goes_on(left);
                 if survival == 0.0 {
                     return None;

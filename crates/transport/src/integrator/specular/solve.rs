@@ -1,6 +1,6 @@
 //! Newton's method: the direction in which a chain points at a lamp.
 
-use super::chain::Chain;
+use super::chain::{Chain, Link};
 use crate::film::Counters;
 use crate::integrator::vertex::Vertex;
 use crate::integrator::wavelength_lanes::WavelengthModel;
@@ -45,8 +45,9 @@ pub(super) enum Chooses {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Root {
     pub wi: Vec3<f64>,
-    /// Vertices of the chain, and through which of them it goes: a bit of each, of the last 64.
+    /// Vertices of the chain.
     pub vertices: u32,
+    /// Through which of the last 64 it goes: a bit of each.
     pub passes: u64,
     /// det ∂r/∂ω.
     pub determinant: f64,
@@ -75,11 +76,11 @@ impl Approached {
     }
 }
 
-/// Where a chain ends: its last vertex, and the surfaces of all, as one number.
+/// Where a chain ends: its last vertex, and what is known of all.
 #[derive(Clone, Copy, Debug)]
 struct End {
-    position: Vec3<f64>,
-    direction: Vec3<f64>,
+    last: Link,
+    /// The surfaces, as one number.
     surfaces: u64,
     /// Whether the chain has only passed panes: its light comes by a shadow ray.
     is_straight: bool,
@@ -88,22 +89,9 @@ struct End {
 }
 
 impl End {
-    /// The part of the lamp's direction that is at right angles to the chain's: its length is the sine of the angle between them. Beyond a right
-    /// angle it is 2 less the sine, so that it grows with the angle.
-    fn miss(&self, source: &Source) -> Vec3<f64> {
-        let toward = source.toward(self.position);
-        let cos = toward.dot(self.direction);
-        let across = toward - self.direction * cos;
-        if cos >= 0.0 {
-            return across;
-        }
-        let sin = across.length();
-        if sin > 0.0 { across * ((2.0 - sin) / sin) } else { Frame::from_normal(self.direction).s * 2.0 }
-    }
-
     /// The miss along the tangents of a frame.
     fn miss_along(&self, source: &Source, toward: &Frame<f64>) -> [f64; 2] {
-        let miss = self.miss(source);
+        let miss = self.last.miss(source);
         [miss.dot(toward.s), miss.dot(toward.t)]
     }
 }
@@ -143,7 +131,7 @@ impl<'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: usiz
     /// The root to which a direction leads.
     pub(super) fn solve(&mut self, seed: &Seed, source: &Source, counters: &mut Counters) -> Option<Root> {
         let Approached { wi, end, vertices } = self.approach(seed, source, counters)?;
-        let (at, toward) = (Frame::from_normal(wi), Frame::from_normal(end.direction));
+        let (at, toward) = (Frame::from_normal(wi), Frame::from_normal(end.last.direction));
         let derivative = self.derivative((&at, &toward), (vertices, source), end.surfaces, counters)?;
         let step = newton_step(&derivative, end.miss_along(source, &toward))?;
         if length(step) >= SAME {
@@ -163,7 +151,7 @@ impl<'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: usiz
         let mut wi = seed.direction;
         let mut end = self.end(wi, vertices, counters).filter(|end| !end.is_straight)?;
         for _ in 0..MOST_DERIVATIVES {
-            let (at, toward) = (Frame::from_normal(wi), Frame::from_normal(end.direction));
+            let (at, toward) = (Frame::from_normal(wi), Frame::from_normal(end.last.direction));
             let mut miss = end.miss_along(source, &toward);
             let mut derivative = self.rough_derivative((&at, &toward), (vertices, source), miss, counters)?;
             let mut angles = [0.0; 2];
@@ -179,7 +167,7 @@ impl<'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: usiz
                     let taken = step.map(|s| s * part);
                     let moved = beside(&at, [angles[0] + taken[0], angles[1] + taken[1]]);
                     if let Some(there) = self.end(moved, vertices, counters)
-                        && there.miss(source).length() < before
+                        && there.last.miss(source).length() < before
                     {
                         (wi, end) = (moved, there);
                         break taken;
@@ -192,7 +180,7 @@ impl<'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: usiz
                 };
                 let now = end.miss_along(source, &toward);
                 // Beyond half a right angle the frame of the last derivative says little.
-                if length(now) > 0.5 * before || end.direction.dot(toward.n) < 0.7 || tries > 1 {
+                if length(now) > 0.5 * before || end.last.direction.dot(toward.n) < 0.7 || tries > 1 {
                     break;
                 }
                 improve(&mut derivative, taken, [now[0] - miss[0], now[1] - miss[1]]);
@@ -232,11 +220,9 @@ impl<'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: usiz
         /// Added to the squared miss, so that no chance is infinite; and the factor of a chance where the chain is blocked.
         const NEAR: f64 = 1e-6;
         const BLOCKED: f64 = 0.01;
-        let u = match seed.chooses {
-            Chooses::By(u) => u,
-            Chooses::This(vertices) => return Some(vertices),
-            Chooses::Nearest => 0.0,
-        };
+        if let Chooses::This(vertices) = seed.chooses {
+            return Some(vertices);
+        }
         let mut chances = Vec::new();
         let mut before: Option<(Vec3<f64>, f64)> = None;
         self.follow(seed.direction, counters, |link| {
@@ -245,16 +231,14 @@ impl<'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: usiz
             {
                 *chance *= BLOCKED;
             }
-            let end =
-                End { position: link.position, direction: link.direction, surfaces: 0, is_straight: false, passes: 0 };
             before = Some((link.position, source.distance(link.position)));
-            chances.push(1.0 / (end.miss(source).length_squared() + NEAR));
+            chances.push(1.0 / (link.miss(source).length_squared() + NEAR));
             true
         });
-        if matches!(seed.chooses, Chooses::Nearest) {
-            let last = (0..chances.len()).max_by(|a, b| chances[*a].total_cmp(&chances[*b]));
-            return last.map(|last| last as u32 + 1);
-        }
+        let Chooses::By(u) = seed.chooses else {
+            let nearest = (0..chances.len()).max_by(|a, b| chances[*a].total_cmp(&chances[*b]));
+            return nearest.map(|nearest| nearest as u32 + 1);
+        };
         let mut left = u * chances.iter().sum::<f64>();
         let chosen = chances.iter().position(|chance| {
             left -= chance;
@@ -273,7 +257,7 @@ impl<'a, V: Vertex<'a>, M: WavelengthModel<N>, P: Polarisation<N>, const N: usiz
             is_straight &= link.passes_pane;
             passes = passes << 1 | u64::from(link.passes);
             if count == vertices {
-                end = Some(End { position: link.position, direction: link.direction, surfaces, is_straight, passes });
+                end = Some(End { last: *link, surfaces, is_straight, passes });
             }
             count < vertices
         });

@@ -12,7 +12,6 @@ use crate::integrator::vertex::Vertex;
 use crate::integrator::wavelength_lanes::WavelengthModel;
 use crate::integrator::{LightDraw, MOST_VERTICES, Path};
 use crate::light::LightSample;
-use crate::media::Way;
 use crate::polarisation::Polarisation;
 use crate::scene::world::World;
 use etalon_geometry::Ray;
@@ -76,13 +75,8 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             let ray = Ray { t_max: sample.target.distance(from.origin), ..from };
             let met = world.intersect(&ray, &mut walker.walk, &mut walker.stack, counters);
             if world.participating.is_some() {
-                if let Some(met) = &met {
-                    walker.stack.meet(met.surface.interior(), met.meets_front());
-                }
-                let end = met.as_ref().map(|met| (met.point.position - start).length());
-                let length = end.unwrap_or_else(|| sample.target.distance(start));
-                left *=
-                    walker.transmittance(world, &walker.stack, &Way { origin: start, direction: sample.wi, length });
+                let to_lamp = sample.target.distance(start);
+                left *= walker.transmittance_to(world, (start, sample.wi), met.as_ref(), to_lamp);
             }
             let Some(mut met) = met else { return Some(ShadowPassed::by(walker, left, panes, 1.0)) };
             let stops = met.share_that_stops(world);
