@@ -8,18 +8,13 @@ use etalon_scene::{Camera, Projection};
 /// corner of the frame and (1, 1) in the lower right; its z is the depth.
 pub(crate) fn of_camera(camera: &Camera, width: u32, height: u32) -> [[f32; 16]; 2] {
     let (forward, up, position) = (camera.forward, camera.up, camera.position_m);
-    let right = [
-        forward[1] * up[2] - forward[2] * up[1],
-        forward[2] * up[0] - forward[0] * up[2],
-        forward[0] * up[1] - forward[1] * up[0],
-    ];
     let aspect = f64::from(width) / f64::from(height);
     // As columns: a direction, and what it makes of the origin.
     let column = |axis: [f64; 3]| {
         let origin = -(0..3).map(|c| axis[c] * position[c]).sum::<f64>();
         [axis[0], axis[1], axis[2], origin]
     };
-    let [x, y, z] = [column(right), column(up), column(forward)];
+    let [x, y, z] = [column(camera.right()), column(up), column(forward)];
     let one = [0.0, 0.0, 0.0, 1.0];
     let mix = |a: [f64; 4], s: f64, b: [f64; 4], t: f64| -> [f64; 4] { std::array::from_fn(|i| s * a[i] + t * b[i]) };
     let central = |half: f64| [mix(x, 0.5 / (half * aspect), z, 0.5), mix(y, -0.5 / half, z, 0.5), z, z];
@@ -58,6 +53,7 @@ mod tests {
             forward: [0.0, 0.0, -1.0],
             up: [0.0, 1.0, 0.0],
             world_up: [0.0, 1.0, 0.0],
+            mirrored: false,
             projection: perspective,
             near_m: 0.0,
         };
@@ -72,6 +68,8 @@ mod tests {
             let [x, y, _] = times(point, &to_ndc);
             assert!((x - seen[0]).abs() < 1e-6 && (y - seen[1]).abs() < 1e-6, "{x} {y}");
         }
+        let [_, mirrored] = of_camera(&Camera { mirrored: true, ..base.clone() }, 300, 200);
+        assert!((times([1.0 + 1.5 * half, 2.0, -7.0], &mirrored)[0]).abs() < 1e-6);
         let [_, to_ndc] = of_camera(&Camera { projection: orthographic, ..base }, 300, 200);
         let [x, y, z] = times([1.0 - 1.5, 2.0 + 1.0, -4.0], &to_ndc);
         assert!(x.abs() < 1e-6 && y.abs() < 1e-6 && (z - 7.0).abs() < 1e-6, "{x} {y} {z}");

@@ -128,6 +128,8 @@ pub struct Camera {
     pub up: [f64; 3],
     /// Unit vector that the scene calls up, at any angle to `forward`. Keyframes do not turn it. It makes no ray.
     pub world_up: [f64; 3],
+    /// Whether left and right are exchanged in the picture, as in a mirror.
+    pub mirrored: bool,
     /// How points project.
     pub projection: Projection,
     /// Where rays start: this far along `forward` from the eye, m; what is nearer is cut off.
@@ -136,6 +138,19 @@ pub struct Camera {
     pub shutter_s: [f64; 2],
     /// Where it is at all times, if the scene states keyframes. Whether it moves while the shutter is open: [`CameraMotion::moves`].
     pub motion: Option<CameraMotion>,
+}
+
+impl Camera {
+    /// Unit vector to the right in the picture.
+    pub fn right(&self) -> [f64; 3] {
+        right_of(self.forward, self.up, self.mirrored)
+    }
+}
+
+/// Unit vector to the right in the picture of a camera with these orthogonal unit vectors, whose picture may be mirrored.
+pub fn right_of(forward: [f64; 3], up: [f64; 3], mirrored: bool) -> [f64; 3] {
+    let right = DVec3::from(forward).cross(DVec3::from(up));
+    if mirrored { -right } else { right }.to_array()
 }
 
 /// How a camera projects.

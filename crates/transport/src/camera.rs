@@ -85,7 +85,7 @@ impl Camera {
     pub fn new(camera: &scene::Camera, width: u32, height: u32, lens: bool) -> Self {
         let forward = Vec3::from_array(camera.forward);
         let up = Vec3::from_array(camera.up);
-        let right = forward.cross(up);
+        let right = Vec3::from_array(camera.right());
         let aspect = f64::from(width) / f64::from(height);
         let (half_height, kind) = match &camera.projection {
             Projection::Perspective { vertical_fov_rad, lens: thin } => {
@@ -263,6 +263,7 @@ mod tests {
             forward: [0.0, 0.0, -1.0],
             up: [0.0, 1.0, 0.0],
             world_up: [0.0, 1.0, 0.0],
+            mirrored: false,
             projection,
             near_m: 0.0,
             shutter_s: [0.0; 2],
@@ -334,6 +335,23 @@ mod tests {
         // Right-handed: looking down −z with y up, x is to the right, and pixels are square.
         let right = c.ray([1.0, 0.0], [0.0; 2]).direction;
         assert!((right.x / -right.z - 1.5 * 0.4_f64.tan()).abs() < 1e-14);
+    }
+
+    #[test]
+    fn a_mirrored_camera_exchanges_left_and_right_of_film_and_lens() {
+        let lens = Some(ThinLens { radius_m: 0.1, focus_distance_m: 2.0 });
+        for projection in [Projection::Perspective { vertical_fov_rad: 0.8, lens }, Projection::Orthographic { height_m: 2.0 }] {
+            let straight = camera(projection);
+            let of = |mirrored| Camera::new(&scene::Camera { mirrored, ..straight.clone() }, 300, 200, false).ray([0.7, 0.3], [0.2, 0.6]);
+            let (straight, mirrored) = (of(false), of(true));
+            assert_eq!(mirrored.origin - Vec3::new(1.0, 0.0, 0.0), reflect_x(straight.origin - Vec3::new(1.0, 0.0, 0.0)));
+            assert_eq!(mirrored.direction, reflect_x(straight.direction));
+        }
+    }
+
+    /// Left for right: the cameras of these tests look along −z with y up.
+    fn reflect_x(v: Vec3<f64>) -> Vec3<f64> {
+        Vec3::new(-v.x, v.y, v.z)
     }
 
     #[test]

@@ -25,8 +25,19 @@ export class Camera {
     this.worldUp = worldUp;
   }
 
-  get right() {
+  // To the right of somebody who stands at the camera.
+  get side() {
     return cross(this.view.forward, this.view.up);
+  }
+
+  // 1, or −1 where left and right are exchanged in the picture.
+  get sign() {
+    return this.view.mirrored ? -1 : 1;
+  }
+
+  // To the right in the picture.
+  get right() {
+    return this.side.map((c) => c * this.sign);
   }
 
   // What is turned about: what is under the cursor, else a point in front of the camera.
@@ -50,7 +61,7 @@ export class Camera {
     const height = Math.asin(Math.min(1, Math.max(-1, -dot(forward, this.worldUp))));
     const limit = 0.49 * Math.PI;
     const bounded = Math.min(limit, Math.max(-limit, height + pitch)) - height;
-    const about = (v) => turned(turned(v, this.right, -bounded), this.worldUp, -yaw);
+    const about = (v) => turned(turned(v, this.side, -bounded), this.worldUp, -yaw * this.sign);
     const from = about(add(position_m, centre, -1));
     const newForward = unit(about(forward));
     // Upright again, so that small errors do not add up.

@@ -20,6 +20,9 @@ pub(crate) struct CameraView {
     pub forward: [f64; 3],
     /// Unit vector, orthogonal to `forward`, that is up in the picture.
     pub up: [f64; 3],
+    /// Whether left and right are exchanged in the picture.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub mirrored: bool,
     /// Full vertical angle of view, rad, of a perspective camera.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub vertical_fov_rad: Option<f64>,
@@ -37,11 +40,12 @@ pub(crate) struct CameraView {
 impl CameraView {
     /// The view of a scene's camera.
     pub(crate) fn of(camera: &Camera) -> Self {
-        let &Camera { position_m, forward, up, .. } = camera;
+        let &Camera { position_m, forward, up, mirrored, .. } = camera;
         let mut view = Self {
             position_m,
             forward,
             up,
+            mirrored,
             vertical_fov_rad: None,
             height_m: None,
             lens_radius_m: None,
@@ -63,6 +67,7 @@ impl CameraView {
     /// Puts the view into a camera of the same kind, which then stands still while the shutter is open.
     pub(crate) fn put_into(&self, camera: &mut Camera) {
         (camera.position_m, camera.forward, camera.up) = (self.position_m, self.forward, self.up);
+        camera.mirrored = self.mirrored;
         camera.motion = None;
         match &mut camera.projection {
             Projection::Perspective { vertical_fov_rad, lens } => {
@@ -109,8 +114,7 @@ impl CameraView {
 
     /// Right of the picture.
     fn right(&self) -> [f64; 3] {
-        let (f, u) = (self.forward, self.up);
-        [f[1] * u[2] - f[2] * u[1], f[2] * u[0] - f[0] * u[2], f[0] * u[1] - f[1] * u[0]]
+        etalon_scene::right_of(self.forward, self.up, self.mirrored)
     }
 
     /// A point in the camera's own coordinates, m: along right, up and forward.
@@ -186,6 +190,7 @@ mod tests {
             position_m: [1.0, 2.0, 3.0],
             forward: [0.0, 0.0, -1.0],
             up: [0.0, 1.0, 0.0],
+            mirrored: false,
             vertical_fov_rad: Some(0.8),
             height_m: None,
             lens_radius_m: None,
@@ -205,6 +210,8 @@ mod tests {
         near(at([1.0, 2.0, -7.0]), 150.0, 100.0);
         near(at([1.0 - 1.5 * half, 2.0 + half, -7.0]), 0.0, 0.0);
         near(at([1.0 + 1.5 * half, 2.0 - half, -7.0]), 300.0, 200.0);
+        let mirrored = CameraView { mirrored: true, ..view.clone() };
+        near(mirrored.pixel(mirrored.local([1.0 + 1.5 * half, 2.0 - half, -7.0]), size), 0.0, 200.0);
         assert_eq!(at([1.0, 2.0, 4.0]), None);
         let [from, to] = view.segment([1.0, 2.0, -7.0], [1.0, 12.0, 13.0], size).unwrap();
         assert!(from == [150.0, 100.0] && to[0] == 150.0 && to[1] < 0.0, "{to:?}");
@@ -218,6 +225,7 @@ mod tests {
             forward,
             up,
             world_up,
+            mirrored: false,
             projection: Projection::Orthographic { height_m: 1.0 },
             near_m: 0.0,
             shutter_s: [0.0; 2],

@@ -134,6 +134,7 @@ CASES = [
     *(of("fov", axis=axis) for axis in ("x", "y", "smaller", "larger", "diagonal")),
     of("focal-length"),
     of("orthographic"),
+    of("mirrored"),
     of("film-crop", options=("--crop", "28,12,40,48")),
     *(of("filter", filter=f) for f in ("tent", "gaussian")),
     of("nested-integrator"),

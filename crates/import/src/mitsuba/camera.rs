@@ -70,12 +70,12 @@ impl<'a> Walk<'a, '_, '_> {
         let (Some(forward), Some(up)) = (unit(to_world.matrix3.z_axis), unit(to_world.matrix3.y_axis)) else {
             return Err(format!("{place}: its transform flattens it"));
         };
-        if to_world.matrix3.determinant() < 0.0 {
-            self.builder.leave_out(&place, "its transform mirrors the picture; this is ignored");
-        }
         let mut camera = json!({
             "position_m": to_world.translation.to_array(), "direction": forward.to_array(), "up": up.to_array(),
         });
+        if to_world.matrix3.determinant() < 0.0 {
+            camera["mirrored"] = json!(true);
+        }
         // Mitsuba's own default.
         let near = element.number("near_clip")?.unwrap_or(0.01);
         match element.plugin() {

@@ -163,6 +163,14 @@ fn a_mitsuba_scene_arrives_with_its_camera_shapes_materials_and_lights() {
     assert!(matches!(scene.lights[1].kind, LightKind::Environment { .. }));
 }
 
+#[test]
+fn a_camera_of_mitsuba_whose_transform_mirrors_has_a_mirrored_picture() {
+    let mirrored = MITSUBA.replace("<lookat", "<scale x=\"-1\"/><lookat");
+    let camera = |text: &str| scene(&imported("xml", text)).camera;
+    assert_eq!(camera(&mirrored), etalon_scene::Camera { mirrored: true, ..camera(MITSUBA) });
+    assert_eq!(said(&imported("xml", &mirrored)), said(&imported("xml", MITSUBA)));
+}
+
 /// There a mirroring transform turns triangles inside out, but not what has normals of its own.
 #[test]
 fn a_mirrored_mesh_of_mitsuba_shines_from_the_side_that_it_does_there() {

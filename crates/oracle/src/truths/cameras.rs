@@ -64,6 +64,23 @@ fn near_planes() -> Vec<Truth> {
     .into()
 }
 
+/// Lamps that fill the upper right pixel of eight by eight where the picture is not mirrored: the upper left one of a mirrored picture is read.
+fn mirrored() -> impl Iterator<Item = Truth> {
+    let (eye, ahead) = ([0.0; 3], [0.0, 0.0, -1.0]);
+    let lamp = || parallelogram([0.75, 0.75, -1.0], [0.25, 0.0, 0.0], [0.0, 0.25, 0.0]);
+    let because = "What is to the right of the eye is to the left in a mirrored picture. Up stays up.";
+    [
+        ("mirrored-picture-of-a-pinhole", Scene::pinhole(eye, ahead, 90.0)),
+        ("mirrored-picture-of-a-lens", Scene::lens(eye, ahead, 90.0, 0.1, 1.0)),
+        ("mirrored-picture-in-parallel-rays", Scene::orthographic(eye, ahead, 2.0)),
+    ]
+    .map(|(name, scene)| {
+        let scene = scene.mirrored().film(8, 8).spp(1024).lamp(lamp(), black(), 1.0, "front");
+        Truth::new(name, &scene, 1.0, "1").because(because).or_else("not mirrored, or turned by half a turn", 0.0).reads_pixels([0, 1, 0, 1])
+    })
+    .into_iter()
+}
+
 pub(super) fn truths() -> Vec<Truth> {
     let because = "Rays from a lens point p through the focus point on the axis pass depth z at p(1 − z/z_f): over the lens they fill a circle of \
          radius a|z − z_f|/z_f evenly.";
@@ -167,6 +184,7 @@ pub(super) fn truths() -> Vec<Truth> {
             .sees(0.02),
     ];
     list.extend(near_planes());
+    list.extend(mirrored());
     list
 }
 

@@ -134,6 +134,13 @@ impl Scene {
         self
     }
 
+    /// Left and right are exchanged in the picture.
+    pub(super) fn mirrored(mut self) -> Self {
+        self.camera["mirrored"] = json!(true);
+        self.whole_format = true;
+        self
+    }
+
     /// A Lambert plate of albedo ½ at the origin that faces +z, seen in parallel rays from 60° off its normal, from so near
     /// that nothing comes between; it shows E/(2π). It is smaller than 1e-3 m, so that E is the same all over it to 1e-6 when
     /// nothing is nearer than 1 m.

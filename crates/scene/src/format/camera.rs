@@ -25,6 +25,8 @@ crate::record! {
         direction: Optional<Spanned<Direction>>,
         /// Which way is up in the picture; only the direction counts, and only its part across the view.
         up: Required<Spanned<Direction>> = "[0, 1, 0]",
+        /// Whether left and right are exchanged in the picture, as in a mirror.
+        mirrored: Required<bool> = "false",
         /// Full vertical angle of view, degrees.
         vertical_fov_deg: Optional<FieldOfView>,
         /// Full horizontal angle of view, degrees.
@@ -74,6 +76,8 @@ crate::record! {
         direction: Optional<Spanned<Direction>>,
         /// Which way is up in the picture; only the direction counts, and only its part across the view.
         up: Required<Spanned<Direction>> = "[0, 1, 0]",
+        /// Whether left and right are exchanged in the picture, as in a mirror.
+        mirrored: Required<bool> = "false",
         /// Height of the picture in the world, m.
         height_m: Required<Positive>,
         /// When the shutter opens and when it closes, s.
@@ -199,6 +203,7 @@ pub(crate) fn camera(
                 forward,
                 up,
                 world_up: form.up?.value.0,
+                mirrored: form.mirrored?,
                 projection: projection?,
                 near_m: form.near_m?.0,
                 shutter_s: shutter_s?,
@@ -217,6 +222,7 @@ pub(crate) fn camera(
                 forward,
                 up,
                 world_up: form.up?.value.0,
+                mirrored: form.mirrored?,
                 projection,
                 near_m: 0.0,
                 shutter_s: shutter_s?,

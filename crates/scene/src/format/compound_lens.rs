@@ -43,6 +43,8 @@ crate::record! {
         direction: Optional<Spanned<Direction>>,
         /// Which way is up in the picture; only the direction counts, and only its part across the view.
         up: Required<Spanned<Direction>> = "[0, 1, 0]",
+        /// Whether left and right are exchanged in the picture, as in a mirror.
+        mirrored: Required<bool> = "false",
         /// The lens. Either this or `lens_file`.
         lens: Optional<CompoundLensForm>,
         /// A JSON file with the lens, relative to the folder of the scene.
@@ -149,6 +151,7 @@ pub(super) fn compound_lens_camera(
         forward,
         up,
         world_up: form.up?.value.0,
+        mirrored: form.mirrored?,
         projection,
         near_m: 0.0,
         shutter_s: shutter_s?,

@@ -80,7 +80,7 @@ mod tests {
     use proptest::prelude::*;
     use scene::{Projection as Kind, ThinLens};
 
-    fn cameras() -> [Camera; 3] {
+    fn cameras(mirrored: bool) -> [Camera; 3] {
         let lens = ThinLens { radius_m: 0.05, focus_distance_m: 2.5 };
         let perspective = |lens| Kind::Perspective { vertical_fov_rad: 0.8, lens };
         [perspective(None), perspective(Some(lens)), Kind::Orthographic { height_m: 1.5 }].map(|projection| {
@@ -89,6 +89,7 @@ mod tests {
                 forward: [0.0, 0.6, -0.8],
                 up: [0.0, 0.8, 0.6],
                 world_up: [0.0, 1.0, 0.0],
+                mirrored,
                 projection,
                 near_m: 0.1,
                 shutter_s: [0.0; 2],
@@ -104,7 +105,7 @@ mod tests {
         fn a_ray_is_found_again_from_the_points_that_it_meets(
             x in -0.95..0.95_f64, y in -0.95..0.95_f64, u in 0.0..1.0_f64, v in 0.0..1.0_f64, distance in 0.5..30.0_f64,
         ) {
-            for camera in cameras() {
+            for camera in [false, true].into_iter().flat_map(cameras) {
                 let ray = camera.ray([x, y], [u, v]);
                 let point = ray.origin + ray.direction * distance;
                 let seen = camera.project(point, [u, v]).unwrap();
@@ -128,7 +129,7 @@ mod tests {
 
     #[test]
     fn what_is_behind_or_nearer_than_the_near_plane_is_not_seen() {
-        let [pinhole, ..] = cameras();
+        let [pinhole, ..] = cameras(false);
         let forward = Vec3::new(0.0, 0.6, -0.8);
         let at = |distance: f64| pinhole.project(Vec3::new(1.0, 2.0, 3.0) + forward * distance, [0.5; 2]);
         assert!(at(-1.0).is_none() && at(0.05).is_none() && at(0.2).is_some());
