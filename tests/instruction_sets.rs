@@ -10,8 +10,8 @@ use sha2::{Digest, Sha256};
 use crate::support::{command, pixel_bits, scene, words};
 
 /// Scenes that take the ways that differ between instruction sets: few primitives, filtered at once; trees of triangles, of
-/// spheres and of instances; paths side by side with one wavelength, several and bands, guided, shared between pixels.
-const FILMS: [(&str, &str); 9] = [
+/// spheres and of instances; paths side by side with one wavelength, several and bands, guided, shared between pixels; media that are even, of a density grid, and within glass.
+const FILMS: [(&str, &str); 12] = [
     ("cornell.json", ""),
     ("cornell.json", "--path-reuse 4x2"),
     ("cornell.json", "--sampler independent"),
@@ -21,6 +21,9 @@ const FILMS: [(&str, &str); 9] = [
     ("lanterns.json", ""),
     ("veach-mis.json", "--loop scalar"),
     ("polarisers.json", ""),
+    ("fog.json", ""),
+    ("cloud.json", "--bands 420:680:20"),
+    ("milk.json", ""),
 ];
 
 /// The variable that names another program than the one under test, with the words before it: one for another processor.

@@ -54,7 +54,7 @@ fn a_picture_says_how_it_was_made() {
 #[test]
 fn any_number_of_threads_gives_the_same_pixels_to_the_bit() {
     let folder = tempfile::tempdir().unwrap();
-    for name in ["cornell.json", "cornell-glass.json"] {
+    for name in ["cornell.json", "cornell-glass.json", "fog.json", "cloud.json", "milk.json"] {
         for more in ["", "--sampler independent"] {
             let render = |threads: u32, seed: u32| {
                 let output = folder.path().join("x.exr");
@@ -74,46 +74,63 @@ fn any_number_of_threads_gives_the_same_pixels_to_the_bit() {
 #[test]
 fn a_crop_has_the_pixels_of_the_whole_picture() {
     let folder = tempfile::tempdir().unwrap();
-    let (scene, whole, part) = (scene("cornell.json"), folder.path().join("whole.exr"), folder.path().join("part.exr"));
-    etalon_line("render {} -o {} --spp 2 --size 40x30", [&scene, &whole]).expect(0);
-    etalon_line("render {} -o {} --spp 2 --size 40x30 --crop 7,3,22,17", [&scene, &part]).expect(0);
-    let (whole, _) = pixel_bits(&whole);
-    let (part, file) = pixel_bits(&part);
-    assert_eq!((file.picture.width(), file.picture.height()), (22, 17));
-    assert_eq!(file.picture.window(), etalon_picture::Window { origin_px: [7, 3], frame_px: [40, 30] });
-    for ((_, whole), (name, part)) in whole.iter().zip(&part) {
-        for (row, samples) in part.chunks(22).enumerate() {
-            let start = (row + 3) * 40 + 7;
-            assert_eq!(samples, &whole[start..start + 22], "channel {name}, row {row} of the crop");
+    for name in ["cornell.json", "fog.json"] {
+        let (scene, whole, part) = (scene(name), folder.path().join("whole.exr"), folder.path().join("part.exr"));
+        etalon_line("render {} -o {} --spp 2 --size 40x30", [&scene, &whole]).expect(0);
+        etalon_line("render {} -o {} --spp 2 --size 40x30 --crop 7,3,22,17", [&scene, &part]).expect(0);
+        let (whole, _) = pixel_bits(&whole);
+        let (part, file) = pixel_bits(&part);
+        assert_eq!((file.picture.width(), file.picture.height()), (22, 17));
+        assert_eq!(file.picture.window(), etalon_picture::Window { origin_px: [7, 3], frame_px: [40, 30] });
+        for ((_, whole), (channel, part)) in whole.iter().zip(&part) {
+            for (row, samples) in part.chunks(22).enumerate() {
+                let start = (row + 3) * 40 + 7;
+                assert_eq!(samples, &whole[start..start + 22], "{name}: channel {channel}, row {row} of the crop");
+            }
         }
     }
 }
 
 #[test]
 fn a_replayed_path_is_the_one_that_made_the_pixel() {
-    let folder = tempfile::tempdir().unwrap();
-    let (scene, output) = (scene("cornell.json"), folder.path().join("x.exr"));
-    let settings = "--spp 1 --size 8x8 --seed 3";
-    etalon_line(&format!("render {{}} -o {{}} {settings}"), [&scene, &output]).expect(0);
-    let file = etalon_picture::read_exr(&output).unwrap();
-    for (x, y) in [(0, 0), (3, 4), (7, 7), (4, 1)] {
-        let line = format!("render {{}} {settings} --pixel {x},{y} --sample 0");
-        let replay = etalon_line(&format!("{line} --json"), [&scene]).expect(0).json();
-        let xyz: [f64; 3] = serde_json::from_value(replay["xyz"].clone()).unwrap();
-        let rgb = etalon_optics::colour::rec709_from_xyz(xyz);
-        for (channel, expected) in ["R", "G", "B"].into_iter().zip(rgb) {
-            assert_eq!(file.picture.channel(channel).unwrap()[y * 8 + x], expected as f32, "{channel} of {x},{y}");
+    for (name, pixels) in [
+        ("cornell.json", [(0, 0), (3, 4), (7, 7), (4, 1)]),
+        // In mist, in a cloud of a density grid, and in milk behind glass.
+        ("fog.json", [(0, 0), (3, 4), (7, 7), (4, 1)]),
+        ("cloud.json", [(3, 3), (4, 3), (3, 4), (4, 4)]),
+        ("milk.json", [(3, 3), (4, 3), (3, 5), (4, 6)]),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        let (path, output) = (scene(name), folder.path().join("x.exr"));
+        let settings = "--spp 1 --size 8x8 --seed 3";
+        etalon_line(&format!("render {{}} -o {{}} {settings}"), [&path, &output]).expect(0);
+        let file = etalon_picture::read_exr(&output).unwrap();
+        let mut scatterings = 0;
+        for (x, y) in pixels {
+            let line = format!("render {{}} {settings} --pixel {x},{y} --sample 0");
+            let replay = etalon_line(&format!("{line} --json"), [&path]).expect(0).json();
+            let xyz: [f64; 3] = serde_json::from_value(replay["xyz"].clone()).unwrap();
+            let rgb = etalon_optics::colour::rec709_from_xyz(xyz);
+            for (channel, expected) in ["R", "G", "B"].into_iter().zip(rgb) {
+                let read = file.picture.channel(channel).unwrap()[y * 8 + x];
+                assert_eq!(read, expected as f32, "{name}: {channel} of {x},{y}");
+            }
+            let text = etalon_line(&line, [&path]).expect(0).stdout;
+            for event in replay["events"].as_array().unwrap() {
+                let line = match event["event"].as_str().unwrap() {
+                    "vertex" => format!("vertex {}: {}", event["vertex"], event["object"]),
+                    "scattering" => {
+                        scatterings += 1;
+                        format!("vertex {}: medium", event["vertex"])
+                    }
+                    "light" => format!("light at vertex {}", event["vertex"]),
+                    "end" => format!("end: {}", event["because"].as_str().unwrap()),
+                    other => panic!("an event of kind {other}"),
+                };
+                assert!(text.contains(&line), "`{line}` is not in:\n{text}");
+            }
         }
-        let text = etalon_line(&line, [&scene]).expect(0).stdout;
-        for event in replay["events"].as_array().unwrap() {
-            let line = match event["event"].as_str().unwrap() {
-                "vertex" => format!("vertex {}: {}", event["vertex"], event["object"]),
-                "light" => format!("light at vertex {}", event["vertex"]),
-                "end" => format!("end: {}", event["because"].as_str().unwrap()),
-                other => panic!("an event of kind {other}"),
-            };
-            assert!(text.contains(&line), "`{line}` is not in:\n{text}");
-        }
+        assert_eq!(scatterings > 0, name != "cornell.json", "{name}: {scatterings} scatterings");
     }
 }
 

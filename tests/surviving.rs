@@ -10,6 +10,7 @@ use crate::support::{command, entries, etalon_line, pixel_bits, scene, signal, w
 
 /// Three to seven seconds, so that ten kills come before its end.
 const SHORT: &str = "--size 96x72 --spp 1000 --seed 5";
+const SHORT_IN_MIST: &str = "--size 64x40 --spp 500 --seed 5";
 /// Minutes.
 const LONG: &str = "--spp 1000000 --size 256x256 --threads 2";
 
@@ -35,16 +36,26 @@ fn wait_for(path: &Path, child: &mut Child) {
 
 #[test]
 fn a_render_killed_at_ten_moments_and_resumed_has_the_same_bytes() {
+    killed_and_resumed("cornell.json", SHORT);
+}
+
+#[test]
+fn a_render_of_mist_killed_at_ten_moments_and_resumed_has_the_same_bytes() {
+    killed_and_resumed("fog.json", SHORT_IN_MIST);
+}
+
+#[track_caller]
+fn killed_and_resumed(name: &str, settings: &str) {
     let folder = tempfile::tempdir().unwrap();
     let (unbroken, broken) = (folder.path().join("unbroken.exr"), folder.path().join("broken.exr"));
     let checkpoint = folder.path().join("broken.exr.checkpoint");
-    let cornell = scene("cornell.json");
-    etalon_line(&format!("render {{}} -o {{}} {SHORT} --quiet"), [&cornell, &unbroken]).expect(0);
+    let path = scene(name);
+    etalon_line(&format!("render {{}} -o {{}} {settings} --quiet"), [&path, &unbroken]).expect(0);
 
-    let line = format!("render {{}} -o {{}} {SHORT} --checkpoint 0.02s --resume --quiet");
+    let line = format!("render {{}} -o {{}} {settings} --checkpoint 0.02s --resume --quiet");
     let (mut kills, mut number) = (0, 0x2545_f491_u32);
     while kills < 10 {
-        let mut child = command(words(&line, [&cornell, &broken])).spawn().unwrap();
+        let mut child = command(words(&line, [&path, &broken])).spawn().unwrap();
         // Moments from a fixed sequence (xorshift32), in the midst of rendering, writing and starting.
         number ^= number << 13;
         number ^= number >> 17;
@@ -60,7 +71,7 @@ fn a_render_killed_at_ten_moments_and_resumed_has_the_same_bytes() {
     }
     assert!(kills == 10, "the render ended after {kills} kills: too short for this machine");
     assert!(checkpoint.exists(), "ten runs without a checkpoint");
-    let ran = etalon_line(&line, [&cornell, &broken]).expect(0);
+    let ran = etalon_line(&line, [&path, &broken]).expect(0);
     assert!(!ran.stderr.contains("no checkpoint"), "{}", ran.stderr);
     assert_eq!(picture(&broken), picture(&unbroken));
     assert!(!checkpoint.exists(), "a checkpoint of what is done");
@@ -154,6 +165,23 @@ fn parts_merge_to_the_bytes_of_the_whole_and_wrong_ones_are_refused_by_name() {
     refused([&a, &b, &part(5, 16)], &["5-of-16.part", "one of 16 shares"]);
     refused([&a, &b, &whole], &["whole.exr", "not a checkpoint or part"]);
     etalon_line("merge {} {} -o {}", [&a, &c, &none]).expect(2).says(["share 2/3", "missing"]);
+}
+
+#[test]
+fn parts_of_a_picture_of_mist_merge_to_the_bytes_of_the_whole() {
+    let folder = tempfile::tempdir().unwrap();
+    let size = "--size 80x60 --spp 8 --quiet";
+    let mist = scene("fog.json");
+    let (whole, merged) = (folder.path().join("mist.exr"), folder.path().join("merged-mist.exr"));
+    etalon_line(&format!("render {{}} -o {{}} {size}"), [&mist, &whole]).expect(0);
+    let parts = folder.path().join("mist");
+    fs::create_dir(&parts).unwrap();
+    for k in 1..=3 {
+        let line = format!("render {{}} -o {{}} {size} --threads {} --shard {k}/3", 1 + k % 2);
+        etalon_line(&line, [&mist, &parts.join(format!("{k}.part"))]).expect(0);
+    }
+    etalon_line("merge {} -o {} --quiet", [&parts, &merged]).expect(0);
+    assert_eq!(picture(&merged), picture(&whole));
 }
 
 #[test]

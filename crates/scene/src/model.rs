@@ -54,7 +54,7 @@ pub use slide::{EvenOn, SlideLight};
 pub use thin_film::{FilmIndex, FilmLayer, ThinFilm};
 pub use varying::{NumberTexture, SpectrumTexture};
 
-use glam::DAffine3;
+use glam::{DAffine3, DVec3};
 use std::sync::Arc;
 
 use crate::linear::{from_rows, rows};

@@ -76,7 +76,10 @@ fn mirrored() -> impl Iterator<Item = Truth> {
     ]
     .map(|(name, scene)| {
         let scene = scene.mirrored().film(8, 8).spp(1024).lamp(lamp(), black(), 1.0, "front");
-        Truth::new(name, &scene, 1.0, "1").because(because).or_else("not mirrored, or turned by half a turn", 0.0).reads_pixels([0, 1, 0, 1])
+        Truth::new(name, &scene, 1.0, "1")
+            .because(because)
+            .or_else("not mirrored, or turned by half a turn", 0.0)
+            .reads_pixels([0, 1, 0, 1])
     })
     .into_iter()
 }

@@ -53,6 +53,7 @@ mod measured_files;
 mod media;
 mod meters;
 mod motion;
+mod moving_media;
 mod named;
 mod nested_media;
 mod panes;
@@ -366,7 +367,7 @@ pub fn truths() -> Vec<Truth> {
     LIST.clone()
 }
 
-const GROUPS: [fn() -> Vec<Truth>; 57] = [
+const GROUPS: [fn() -> Vec<Truth>; 58] = [
     lamps_behind_glass::truths,
     panes::truths,
     furnaces::truths,
@@ -412,6 +413,7 @@ const GROUPS: [fn() -> Vec<Truth>; 57] = [
     principled::truths,
     principled_tints::truths,
     media::truths,
+    moving_media::truths,
     albedo_grids::truths,
     nested_media::truths,
     lit_fog::truths,
