@@ -6,6 +6,8 @@ import importlib.util
 import json
 import math
 import pathlib
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -38,6 +40,38 @@ def test_truths_are_those_of_the_command_line(tmp_path):
             assert ours.read_text() == path.read_text()
     listed = {entry["name"]: entry for entry in json.loads((tmp_path / "theirs" / "truths.json").read_text())["truths"]}
     assert all(listed[name]["value"] == oracle.truth(name).value for name in names)
+
+
+def test_the_judge_of_the_exported_folder_needs_nothing_and_agrees(tmp_path):
+    truths = oracle.truths()[::7]
+    oracle.export(tmp_path, [truth.name for truth in truths])
+    spec = importlib.util.spec_from_file_location("exported_judge", tmp_path / "judge.py")
+    judge = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(judge)
+    listed = {entry["name"]: entry for entry in json.loads((tmp_path / "truths.json").read_text())["truths"]}
+    for truth in truths:
+        entry = listed[truth.name]
+        for share, off, freedom in [(0.02, 0, None), (0.02, 3, 15), (0.02, 7, None), (0.02, 7, 15), (0.3, -5, 63), (5, 0, None)]:
+            error = share * (entry["must_resolve"] or 1)
+            mean = truth.value + off * error + math.copysign(entry["tolerance"], off)
+            ours = oracle.judge(truth, mean, error, degrees_of_freedom=freedom, tests=7)
+            passed, said = judge.judge(entry, mean, error, freedom, tests=7)
+            assert passed == ours.passed, (truth.name, share, off, freedom, said, ours.evidence)
+    for z, freedom in [(0.5, 3), (4, 3), (6, 63), (30, 15)]:
+        # Both sides of the quantile.
+        assert math.isclose(judge.quantile(judge.tail(z, freedom), freedom), z, rel_tol=1e-9)
+
+    def run(readings):
+        (tmp_path / "readings.json").write_text(json.dumps(readings))
+        program = [sys.executable, "-I", tmp_path / "judge.py", tmp_path / "readings.json"]
+        return subprocess.run(program, capture_output=True, text=True)
+
+    name = "eye-in-glass"
+    right, wrong = run({name: [2.25, 2.25]}), run({name: {"mean": 1.0, "error": 0}})
+    assert right.returncode == 0 and f"pass  {name}" in right.stdout
+    assert wrong.returncode == 1 and f"FAIL  {name}" in wrong.stdout
+    for broken in ({"no-such-truth": [1, 1]}, {name: [2.25]}, {}, {name: {"mean": 1}}, [1]):
+        assert run(broken).returncode == 2, broken
 
 
 def test_a_right_reading_passes_and_known_mistakes_fail():

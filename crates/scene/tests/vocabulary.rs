@@ -33,9 +33,7 @@ const WITHOUT_LIGHT: &[(&str, &str, &str)] = &[
 
 /// The reason why a row needs no truth.
 fn without_light((record, key): &Row) -> Option<&'static str> {
-    let named = |of: &str, name: &str| {
-        (of.is_empty() || record.ends_with(of)) && (key == name || key.starts_with(&format!("{name}: ")))
-    };
+    let named = |of: &str, name: &str| (of.is_empty() || record.ends_with(of)) && key == name;
     WITHOUT_LIGHT.iter().find(|(of, name, _)| named(of, name)).map(|(_, _, reason)| *reason)
 }
 

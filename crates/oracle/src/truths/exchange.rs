@@ -20,18 +20,20 @@ pub struct ExchangeFile {
     pub bytes: Vec<u8>,
 }
 
-/// The folder with which a renderer joins: a README, the JSON Schema of the neutral form, the list of truths, and a scene
-/// for each, with the files that it names.
+/// The folder with which a renderer joins: a README, the JSON Schema of the neutral form, the list of truths, a judge that needs nothing but Python,
+/// and a scene for each truth, with the files that it names.
 ///
 /// # Panics
 /// If two scenes name different files alike.
 #[must_use]
 pub fn exchange_files(truths: &[Truth]) -> Vec<ExchangeFile> {
     let file = |path: &str, text: &str| ExchangeFile { path: path.to_owned(), bytes: text.as_bytes().to_vec() };
-    let list = json!({ "format": 1, "truths": truths.iter().map(entry).collect::<Vec<_>>() });
+    let (version, license) = (env!("CARGO_PKG_VERSION"), env!("CARGO_PKG_LICENSE"));
+    let list = json!({ "format": 1, "version": version, "license": license, "truths": truths.iter().map(entry).collect::<Vec<_>>() });
     let list = serde_json::to_string_pretty(&list).expect("a JSON value always prints") + "\n";
     let mut files = vec![
         file("README.md", include_str!("exchange/README.md")),
+        file("judge.py", include_str!("exchange/judge.py")),
         file("neutral.schema.json", include_str!("exchange/neutral.schema.json")),
         file("truths.json", &list),
     ];
