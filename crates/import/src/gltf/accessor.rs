@@ -4,7 +4,7 @@ use etalon_scene::mesh::MAX_ELEMENTS;
 use gltf::accessor::{DataType, Dimensions};
 use gltf::{Accessor, buffer};
 
-/// All numbers of an accessor, `N` an element; normalised integers as numbers from 0 or −1 to 1.
+/// All numbers of an accessor, `N` an element, 16 of a matrix by columns; normalised integers as numbers from 0 or −1 to 1.
 pub(super) fn numbers<const N: usize>(accessor: &Accessor<'_>, buffers: &[Vec<u8>]) -> Result<Vec<[f64; N]>, String> {
     let place = format!("$.accessors[{}]", accessor.index());
     let fail = |what: &str| format!("{place}: {what}");
@@ -12,7 +12,8 @@ pub(super) fn numbers<const N: usize>(accessor: &Accessor<'_>, buffers: &[Vec<u8
         1 => Dimensions::Scalar,
         2 => Dimensions::Vec2,
         3 => Dimensions::Vec3,
-        _ => Dimensions::Vec4,
+        4 => Dimensions::Vec4,
+        _ => Dimensions::Mat4,
     };
     if accessor.dimensions() != expected {
         return Err(fail("it has the wrong number of components"));

@@ -18,6 +18,8 @@ const STEP_SHARE: f64 = 1.0 / 1048576.0;
 /// Neighbouring keyframes whose rotations are further apart get one between them: half a turn does not say which way.
 const LARGEST_TURN_RAD: f64 = 2.5;
 
+pub(super) const SECOND: &str = "it is the second channel of the same property of the same node";
+
 /// Where a node is within its parent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Pose {
@@ -29,11 +31,11 @@ pub(super) struct Pose {
 
 /// Numbers over time.
 #[derive(Debug)]
-struct Track {
+pub(super) struct Track {
     property: Property,
     times_s: Vec<f64>,
     /// One for each time; of a cubic curve three: the slope before, the value, the slope after.
-    values: Vec<[f64; 4]>,
+    pub(super) values: Vec<[f64; 4]>,
     interpolation: Interpolation,
 }
 
@@ -41,6 +43,8 @@ struct Track {
 #[derive(Debug, Default)]
 pub(super) struct Animated {
     tracks: HashMap<usize, Vec<Track>>,
+    /// The weights of the morph targets of nodes when the shutter opens.
+    pub(super) weights: HashMap<usize, Vec<f64>>,
     /// When the shutter opens and when it closes, s.
     pub shutter_s: [f64; 2],
 }
@@ -87,13 +91,13 @@ impl Animated {
             }
             let property = channel.target().property();
             if property == Property::MorphTargetWeights {
-                builder.leave_out(place, "morph weights are ignored");
+                animated.read_weights(&channel, &place, buffers, builder)?;
                 continue;
             }
             let track = Track::read(&channel, property, buffers).map_err(|why| format!("{place}: {why}"))?;
             let tracks = animated.tracks.entry(channel.target().node().index()).or_default();
             if tracks.iter().any(|known| known.property == property) {
-                return Err(format!("{place}: it is the second channel of the same property of the same node"));
+                return Err(format!("{place}: {SECOND}"));
             }
             tracks.push(track);
         }
@@ -184,8 +188,29 @@ impl Track {
             Property::Rotation => numbers::<4>(&sampler.output(), buffers)?,
             _ => numbers::<3>(&sampler.output(), buffers)?.iter().map(|[x, y, z]| [*x, *y, *z, 0.0]).collect(),
         };
-        let interpolation = sampler.interpolation();
-        let each = if interpolation == Interpolation::CubicSpline { 3 } else { 1 };
+        let track = Self::new(property, times_s, values, sampler.interpolation());
+        track.check()?;
+        Ok(track)
+    }
+
+    /// One that is to be checked.
+    pub(super) fn new(
+        property: Property,
+        times_s: Vec<f64>,
+        values: Vec<[f64; 4]>,
+        interpolation: Interpolation,
+    ) -> Self {
+        Self { property, times_s, values, interpolation }
+    }
+
+    pub(super) fn times_s(&self) -> &[f64] {
+        &self.times_s
+    }
+
+    /// Whether it says something at every time.
+    pub(super) fn check(&self) -> Result<(), String> {
+        let Self { property, times_s, values, interpolation } = self;
+        let each = if *interpolation == Interpolation::CubicSpline { 3 } else { 1 };
         if times_s.is_empty() || Some(values.len()) != times_s.len().checked_mul(each) {
             return Err(format!("{} values for {} times", values.len(), times_s.len()));
         }
@@ -196,14 +221,14 @@ impl Track {
             return Err("its times do not increase".to_owned());
         }
         let zero = |value: &[f64; 4]| value.iter().all(|v| *v == 0.0);
-        if property == Property::Rotation && values.iter().skip(each / 2).step_by(each).any(zero) {
+        if *property == Property::Rotation && values.iter().skip(each / 2).step_by(each).any(zero) {
             return Err("a rotation is a quaternion of length 0".to_owned());
         }
-        Ok(Self { property, times_s, values, interpolation })
+        Ok(())
     }
 
     /// The value at a time: before the first and after the last it stays.
-    fn at(&self, time_s: f64) -> [f64; 4] {
+    pub(super) fn at(&self, time_s: f64) -> [f64; 4] {
         let last = self.times_s.len() - 1;
         let value = |i: usize| match self.interpolation {
             Interpolation::CubicSpline => self.values[3 * i + 1],

@@ -10,25 +10,26 @@ mod diffuse_transmission;
 mod file;
 mod image;
 mod iridescence;
+mod light;
 mod material;
+mod morph;
+mod part;
+mod skin;
 mod variants;
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
-use etalon_scene::Mesh;
-use etalon_scene::linear::{is_similarity, unit, unit_normal};
-use etalon_scene::mesh::MAX_ELEMENTS;
+use etalon_scene::linear::is_similarity;
 use glam::{DAffine3, DVec3};
 use gltf::Node;
-use gltf::mesh::{Mode, Semantic};
-use serde_json::{Value, json};
+use gltf::mesh::Semantic;
 
-use crate::number::{WITHOUT_DIRECTIONS, without_directions};
-use crate::{Builder, Options, light};
-use accessor::numbers;
+use crate::{Builder, Options};
 use animation::{Animated, Pose};
 use file::{buffers, check_images, check_lights, check_primitives, parse};
 use material::Materials;
+use part::{MadePart, Shape};
+use skin::Skeletons;
 
 /// Deepest nesting of nodes.
 const MAX_DEPTH: usize = 256;
@@ -43,9 +44,6 @@ pub(super) fn import(bytes: &[u8], options: &Options, builder: &mut Builder<'_>)
     check_images(&file)?;
     check_lights(&file)?;
     let buffers = buffers(&file, builder)?;
-    if file.skins().count() > 0 {
-        builder.leave_out("$.skins", "they are ignored: the model is as its nodes place it");
-    }
     let variant = variants::asked(&file, options.variant.as_deref(), builder)?;
     let animated = Animated::read(&file, &buffers, moment, builder)?;
     if moment.is_some_and(|moment| moment.shutter_s > 0.0) {
@@ -59,33 +57,28 @@ pub(super) fn import(bytes: &[u8], options: &Options, builder: &mut Builder<'_>)
         chain: Vec::new(),
         buffers: &buffers,
         materials: Materials::default(),
+        skeletons: Skeletons::new(&file, &animated),
         parts: HashMap::new(),
-        visited: Vec::new(),
-        uses: Vec::new(),
+        shape_groups: HashMap::new(),
+        bent: 0,
+        skinned: Vec::new(),
+        visited: vec![false; file.nodes().count()],
+        uses: HashMap::new(),
     };
-    walk.visited = vec![false; file.nodes().count()];
-    walk.uses = vec![0; file.meshes().count()];
     let scene = file.default_scene().or_else(|| file.scenes().next()).ok_or("it has no scene")?;
     for other in file.scenes().filter(|other| other.index() != scene.index()) {
         walk.builder.leave_out(format!("$.scenes[{}]", other.index()), "only one scene is imported");
     }
-    for mesh in file.nodes().filter_map(|node| node.mesh()) {
-        walk.uses[mesh.index()] += 1;
+    for (node, mesh) in file.nodes().filter_map(|node| node.mesh().map(|mesh| (node, mesh))) {
+        // What is wrong with its shape is said if it is in the scene.
+        if let Ok(shape) = walk.shape(&node, &mesh) {
+            *walk.uses.entry((mesh.index(), shape)).or_default() += 1;
+        }
     }
     for node in scene.nodes() {
         walk.node(&node, &DAffine3::IDENTITY, 0)?;
     }
-    Ok(())
-}
-
-/// A mesh that has been made: its file and what it holds.
-struct MadePart {
-    file: String,
-    mesh: Mesh,
-    material: Value,
-    emission: Option<Value>,
-    /// Keys of the objects: opacity, normals.
-    detail: serde_json::Map<String, Value>,
+    walk.place_skinned()
 }
 
 struct Walk<'w, 'b> {
@@ -98,11 +91,18 @@ struct Walk<'w, 'b> {
     chain: Vec<(DAffine3, Vec<(f64, Pose)>)>,
     buffers: &'w [Vec<u8>],
     materials: Materials,
-    /// Parts by mesh and primitive; `None` is one without triangles.
-    parts: HashMap<(usize, usize), Option<MadePart>>,
+    skeletons: Skeletons,
+    /// Parts by mesh, primitive and shape; `None` is one without triangles.
+    parts: HashMap<(usize, usize, Shape), Option<MadePart>>,
+    /// The groups of parts that are placed again and again.
+    shape_groups: HashMap<(usize, usize, Shape), String>,
+    /// Vertices and triangles of parts that are bent.
+    bent: usize,
+    /// Primitives that joints place, with their names.
+    skinned: Vec<(gltf::Mesh<'w>, gltf::Primitive<'w>, String, Shape)>,
     visited: Vec<bool>,
-    /// How often each mesh is placed: one that is placed again and again is a group with instances.
-    uses: Vec<u32>,
+    /// How often each mesh is placed in each shape: one that is placed again and again is a group with instances.
+    uses: HashMap<(usize, Shape), u32>,
 }
 
 impl<'w> Walk<'w, '_> {
@@ -196,17 +196,25 @@ impl<'w> Walk<'w, '_> {
             let world = self.world(matrix, 0.5 * (opens + closes));
             self.light(&lamp, node, &world);
         }
-        if node.weights().is_some() {
-            self.builder.leave_out(&place, "morph weights are ignored");
-        }
         if let Some(mesh) = node.mesh() {
+            let shape = self.shape(node, &mesh)?;
             for primitive in mesh.primitives() {
                 let name = match (node.name().or(mesh.name()), mesh.primitives().len()) {
                     (Some(name), 1) => name.to_owned(),
                     (Some(name), _) => format!("{name}, part {}", primitive.index()),
                     (None, _) => format!("node {}, part {}", node.index(), primitive.index()),
                 };
-                self.place(&mesh, &primitive, &name, matrix)?;
+                let mut shape = shape.clone();
+                if shape.skin.is_some() && primitive.get(&Semantic::Joints(0)).is_none() {
+                    let at = format!("$.meshes[{}].primitives[{}]", mesh.index(), primitive.index());
+                    self.builder.approximate(at, "it has a skin, but no JOINTS_0: its node places it");
+                    shape.skin = None;
+                }
+                match shape.skin {
+                    // Its joints place it in the world, wherever its node is.
+                    Some(_) => self.skinned.push((mesh.clone(), primitive, name, shape)),
+                    None => self.place((&mesh, &primitive, &shape), &name, matrix)?,
+                }
             }
         }
         for child in node.children() {
@@ -224,18 +232,31 @@ impl<'w> Walk<'w, '_> {
         moved * *matrix
     }
 
-    /// Adds a primitive where a node places it; its mesh is made once.
+    /// Adds what joints place. The same mesh with the same joints is in one place, whatever nodes have it.
+    fn place_skinned(&mut self) -> Result<(), String> {
+        let mut placed = HashSet::new();
+        for (mesh, primitive, name, shape) in std::mem::take(&mut self.skinned) {
+            if placed.insert((mesh.index(), primitive.index(), shape.clone())) {
+                self.place((&mesh, &primitive, &shape), &name, &DAffine3::IDENTITY)?;
+            } else {
+                let what = "the same joints place the same mesh for another node: it is left out";
+                self.builder.leave_out(format!("node \"{name}\""), what);
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds a primitive where a node places it; its mesh is made once for each shape.
     fn place(
         &mut self,
-        mesh: &gltf::Mesh<'w>,
-        primitive: &gltf::Primitive<'w>,
+        (mesh, primitive, shape): (&gltf::Mesh<'w>, &gltf::Primitive<'w>, &Shape),
         name: &str,
         matrix: &DAffine3,
     ) -> Result<(), String> {
-        let key = (mesh.index(), primitive.index());
+        let key = (mesh.index(), primitive.index(), shape.clone());
         if !self.parts.contains_key(&key) {
-            let made = self.part(primitive, &format!("$.meshes[{}].primitives[{}]", key.0, key.1))?;
-            self.parts.insert(key, made);
+            let made = self.part(primitive, shape, &format!("$.meshes[{}].primitives[{}]", key.0, key.1))?;
+            self.parts.insert(key.clone(), made);
         }
         let Some(Some(part)) = self.parts.get(&key) else { return Ok(()) };
         let determinant = matrix.matrix3.determinant();
@@ -243,7 +264,8 @@ impl<'w> Walk<'w, '_> {
             self.builder.leave_out(format!("node \"{name}\""), "it is flattened by its transform, and left out");
             return Ok(());
         }
-        if self.uses[key.0] < 2 {
+        // One that has a skin but no joints is not counted with its shape: it is an object each time.
+        if shape.skin.is_some() || self.uses.get(&(key.0, shape.clone())).is_none_or(|uses| *uses < 2) {
             self.builder.add_object(
                 name,
                 &part.file,
@@ -254,8 +276,10 @@ impl<'w> Walk<'w, '_> {
             );
             return Ok(());
         }
-        let group = format!("mesh {}, part {}", key.0, key.1);
-        if !self.builder.groups.contains_key(&group) {
+        // Names of groups are given once, in the order of their shapes.
+        let known = self.shape_groups.get(&key).cloned();
+        let group = known.unwrap_or_else(|| self.builder.group_name(&format!("mesh {}, part {}", key.0, key.1)));
+        if self.shape_groups.insert(key.clone(), group.clone()).is_none() {
             let outside = self.builder.begin_group();
             let more = (part.emission.clone(), &part.detail);
             self.builder.add_object(&group, &part.file, &part.mesh, &part.material, more, &DAffine3::IDENTITY);
@@ -263,147 +287,5 @@ impl<'w> Walk<'w, '_> {
         }
         self.builder.place_group(name, &group, matrix, &format!("node \"{name}\""));
         Ok(())
-    }
-
-    fn part(&mut self, primitive: &gltf::Primitive<'w>, place: &str) -> Result<Option<MadePart>, String> {
-        let fail = |what: &str| format!("{place}: {what}");
-        let material = self.material(primitive, place)?;
-        let alpha = material.alpha_mode();
-        let look = self.materials.of(&material, self.buffers, self.builder)?;
-        for (semantic, _) in primitive.attributes() {
-            let used = match semantic {
-                Semantic::Positions | Semantic::Normals | Semantic::Tangents => true,
-                // Sets that no image uses would be listed for nothing.
-                Semantic::TexCoords(_) | Semantic::Colors(0) => true,
-                Semantic::Colors(_) | Semantic::Joints(_) | Semantic::Weights(_) => false,
-            };
-            if !used {
-                let key = semantic.to_string();
-                self.builder.leave_out(format!("{place}.attributes.{key}"), "it is ignored");
-            }
-        }
-        if primitive.morph_targets().count() > 0 {
-            self.builder.leave_out(format!("{place}.targets"), "morph targets are ignored");
-        }
-        let Some(positions) = primitive.get(&Semantic::Positions) else {
-            self.builder.leave_out(place, "it has no positions, and is left out");
-            return Ok(None);
-        };
-        let vertices = numbers::<3>(&positions, self.buffers)?;
-        if let Some(i) = vertices.iter().position(|v| v.iter().any(|c| !c.is_finite())) {
-            return Err(fail(&format!("vertex {i} lies at {:?}", vertices[i])));
-        }
-        let count = vertices.len();
-        let normals = match primitive.get(&Semantic::Normals) {
-            Some(accessor) => numbers::<3>(&accessor, self.buffers)?,
-            None => Vec::new(),
-        };
-        let uvs = match primitive.get(&Semantic::TexCoords(look.uv_set)) {
-            Some(accessor) => numbers::<2>(&accessor, self.buffers)?,
-            None => Vec::new(),
-        };
-        for (what, length) in [("normals", normals.len()), ("texture coordinates", uvs.len())] {
-            if length != 0 && length != count {
-                return Err(fail(&format!("{length} {what} for {count} vertices")));
-            }
-        }
-        if uvs.iter().flatten().chain(normals.iter().flatten()).any(|v| !v.is_finite()) {
-            return Err(fail("a normal or a texture coordinate is not finite"));
-        }
-        let indices: Vec<u32> = match primitive.indices() {
-            Some(accessor) => numbers::<1>(&accessor, self.buffers)?.iter().map(|[i]| *i as u32).collect(),
-            None => (0..count as u32).collect(),
-        };
-        if let Some(i) = indices.iter().position(|&i| i as usize >= count) {
-            return Err(fail(&format!("index {i} names vertex {}; there are {count}", indices[i])));
-        }
-        let triangles = triangles(primitive.mode(), &indices);
-        if triangles.is_empty() || triangles.len() > MAX_ELEMENTS {
-            self.builder.leave_out(place, "it has no triangles, and is left out");
-            return Ok(None);
-        }
-        let colours = self.colours(primitive, alpha, count, place)?;
-        let mesh = Mesh {
-            vertices,
-            triangles,
-            normals: normals.into_iter().map(unit_normal).collect(),
-            // glTF counts v from the top of the image.
-            uvs: uvs.into_iter().map(|[u, v]| [u as f32, (1.0 - v) as f32]).collect(),
-            colours,
-        };
-        let mut material = look.material.clone();
-        let mut detail = look.detail.clone();
-        let mut emission = look.emission.clone();
-        if mesh.uvs.is_empty() && look.has_image {
-            let what = "it has no texture coordinates for the images of its material: it becomes grey, and an image of \
-                        emission is left out";
-            self.builder.leave_out(place, what);
-            material = json!({ "type": "lambert", "reflectance": 0.8 });
-            detail.clear();
-            emission = emission.filter(|emission| emission["radiance"]["type"] != "image");
-        }
-        if mesh.uvs.is_empty() {
-            let own = material.as_str().and_then(|name| self.builder.materials.get(name));
-            let mut without = own.unwrap_or(&material).clone();
-            if without_directions(&mut without) {
-                self.builder.leave_out(place, WITHOUT_DIRECTIONS);
-                material = without;
-            }
-        }
-        if !mesh.colours.is_empty() {
-            material = self.tinted(material, place)?;
-        }
-        let file = self.builder.mesh_file(&mesh);
-        Ok(Some(MadePart { file, mesh, material, emission, detail }))
-    }
-
-    /// Candela and lux become the format's units as they are: a luminance of 1 cd/m² is a radiance of 1.
-    fn light(&mut self, lamp: &gltf::khr_lights_punctual::Light<'_>, node: &Node<'w>, matrix: &DAffine3) {
-        use gltf::khr_lights_punctual::Kind;
-        let place = format!("$.extensions.KHR_lights_punctual.lights[{}]", lamp.index());
-        let spectrum = light(lamp.color().map(|c| f64::from(c).max(0.0)), f64::from(lamp.intensity()).max(0.0));
-        let position = matrix.translation.to_array();
-        let name = node.name().map_or_else(|| format!("light {}", lamp.index()), str::to_owned);
-        if lamp.range().is_some() {
-            self.builder.leave_out(&place, "its range is ignored: light has no range");
-        }
-        let value = match lamp.kind() {
-            Kind::Directional => {
-                json!({ "name": name, "type": "directional", "direction": forward(matrix), "irradiance": spectrum })
-            }
-            Kind::Point => json!({ "name": name, "type": "point", "position_m": position, "intensity": spectrum }),
-            Kind::Spot { inner_cone_angle, outer_cone_angle } => {
-                self.builder.approximate(&place, "between its two angles the light falls off by another curve");
-                let outer = f64::from(outer_cone_angle).to_degrees().clamp(1e-3, 180.0);
-                let inner = f64::from(inner_cone_angle).to_degrees().clamp(0.0, outer);
-                json!({
-                    "name": name, "type": "spot", "position_m": position, "direction": forward(matrix),
-                    "intensity": spectrum, "half_angle_deg": outer, "inner_half_angle_deg": inner,
-                })
-            }
-        };
-        self.builder.lights.push(value);
-    }
-}
-
-/// Where a camera or a lamp of a node points.
-fn forward(matrix: &DAffine3) -> [f64; 3] {
-    unit(-matrix.matrix3.z_axis).unwrap_or(DVec3::NEG_Z).to_array()
-}
-
-fn triangles(mode: Mode, indices: &[u32]) -> Vec<[u32; 3]> {
-    match mode {
-        Mode::Triangles => indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect(),
-        // Every other one is turned, so that all have the same side outward.
-        Mode::TriangleStrip => indices
-            .windows(3)
-            .enumerate()
-            .map(|(i, t)| if i % 2 == 0 { [t[0], t[1], t[2]] } else { [t[1], t[0], t[2]] })
-            .collect(),
-        Mode::TriangleFan => match indices {
-            [first, rest @ ..] => rest.windows(2).map(|t| [*first, t[0], t[1]]).collect(),
-            [] => Vec::new(),
-        },
-        Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip => Vec::new(),
     }
 }

@@ -231,7 +231,7 @@ fn iridescence_of_gltf_arrives_as_a_thin_film() {
     assert!(layer(&metal).0 == 325.0 && said.contains("half-way"), "{said}");
 }
 
-/// On what is not metal the clear coat is the coat; vertex colours, weights of skins and morph targets are listed.
+/// On what is not metal the clear coat is the coat; further vertex colours and joints without a skin are listed.
 #[test]
 fn clear_coats_and_what_meshes_say_beyond_their_shape() {
     let coated = |factor: f64, metallic: f64| {
@@ -253,9 +253,9 @@ fn clear_coats_and_what_meshes_say_beyond_their_shape() {
     let mut model = model();
     let positions = model["meshes"][0]["primitives"][0]["attributes"]["POSITION"].clone();
     model["meshes"][0]["primitives"][0]["attributes"]["COLOR_1"] = positions.clone();
-    model["meshes"][0]["primitives"][0]["targets"] = json!([{ "POSITION": positions }]);
+    model["meshes"][0]["primitives"][0]["attributes"]["JOINTS_0"] = positions;
     let imported = imported(&model).unwrap();
-    for place in ["$.meshes[0].primitives[0].attributes.COLOR_1", "$.meshes[0].primitives[0].targets"] {
+    for place in ["$.meshes[0].primitives[0].attributes.COLOR_1", "$.meshes[0].primitives[0].attributes.JOINTS_0"] {
         assert!(imported.left_out.iter().any(|l| l.place == place), "{place}: {:#?}", imported.left_out);
     }
 }
