@@ -6,7 +6,7 @@ use super::material::{Materials, decimal};
 use crate::builder::Builder;
 use crate::reflectance;
 
-impl Materials {
+impl Materials<'_> {
     /// It as a spectrum of the format, with the set of texture coordinates of its image.
     pub(super) fn base_colour(
         &mut self,

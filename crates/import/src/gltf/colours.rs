@@ -7,7 +7,8 @@ use serde_json::Value;
 
 use super::Walk;
 use super::accessor::numbers;
-use crate::vertex_colours::{clamp, tint};
+use super::layers::tint_base;
+use crate::vertex_colours::clamp;
 
 impl Walk<'_, '_> {
     /// The colours of the vertices; none where all are white.
@@ -46,7 +47,7 @@ impl Walk<'_, '_> {
     pub(super) fn tinted(&mut self, material: Value, place: &str) -> Result<Value, String> {
         let own = material.as_str().and_then(|name| self.builder.materials.get(name));
         let mut tinted = own.unwrap_or(&material).clone();
-        if !tint(&mut tinted) {
+        if !tint_base(&mut tinted) {
             self.builder.leave_out(format!("{place}.attributes.COLOR_0"), "its material has no base colour");
         }
         self.builder.spend(&tinted, place)?;

@@ -10,8 +10,15 @@ use crate::Builder;
 const GLB_HEADER: u32 = 12;
 
 /// Extensions that a file may require although the library does not know them.
-const HONOURED: [&str; 4] =
-    ["KHR_mesh_quantization", "KHR_materials_anisotropy", "KHR_materials_dispersion", "KHR_materials_variants"];
+const HONOURED: [&str; 7] = [
+    "KHR_mesh_quantization",
+    "KHR_materials_anisotropy",
+    "KHR_materials_clearcoat",
+    "KHR_materials_diffuse_transmission",
+    "KHR_materials_dispersion",
+    "KHR_materials_iridescence",
+    "KHR_materials_variants",
+];
 
 /// Extensions that compress meshes, and what a user may do.
 const COMPRESSED: [&str; 2] = ["KHR_draco_mesh_compression", "EXT_meshopt_compression"];

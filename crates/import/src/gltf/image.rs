@@ -48,7 +48,26 @@ impl TextureTransform {
     }
 }
 
-impl Materials {
+impl<'d> Materials<'d> {
+    /// The image that an extension names which the library does not read: its texture, what it becomes, and its set of texture coordinates.
+    pub(super) fn named(
+        &mut self,
+        info: &Value,
+        place: &str,
+        buffers: &[Vec<u8>],
+        builder: &mut Builder<'_>,
+    ) -> Option<(gltf::Texture<'d>, Value, u32)> {
+        let index = info["index"].as_u64().and_then(|index| usize::try_from(index).ok());
+        let Some(texture) = index.and_then(|index| self.document.textures().nth(index)) else {
+            builder.leave_out(place, format!("it names the texture {}, which does not exist", info["index"]));
+            return None;
+        };
+        let set = info["texCoord"].as_u64().and_then(|set| u32::try_from(set).ok()).unwrap_or(0);
+        let transform = info["extensions"].get("KHR_texture_transform").map(TextureTransform::of_json);
+        let (image, set) = self.laid(&texture, set, transform, place, buffers, builder)?;
+        Some((texture, image, set))
+    }
+
     /// The image of the format that a texture becomes, and its set of texture coordinates.
     pub(super) fn image(
         &mut self,

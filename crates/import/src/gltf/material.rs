@@ -2,18 +2,15 @@
 
 use std::collections::HashMap;
 
-use etalon_scene::LEAST_ALPHA;
-use etalon_scene::{Encoding, Image};
-use gltf::image::Source;
 use gltf::material::AlphaMode;
 use serde_json::{Map, Value, json};
 
-use super::accessor::bytes_of;
-use super::clearcoat;
+use super::anisotropy::Anisotropy;
+use super::clearcoat::{self, ClearCoat};
 use super::diffuse_transmission;
-use super::file::resource;
 use super::image::TextureTransform;
 use super::iridescence::Iridescence;
+use super::number::{Number, data_image};
 use crate::{Builder, light, reflectance};
 
 /// The least share of light that a medium of an imported model lets through.
@@ -35,15 +32,20 @@ pub(super) struct Look {
 }
 
 /// The materials met so far.
-#[derive(Debug, Default)]
-pub(super) struct Materials {
+#[derive(Debug)]
+pub(super) struct Materials<'d> {
+    pub(super) document: &'d gltf::Document,
     known: HashMap<Option<usize>, Look>,
     pub(super) images: HashMap<usize, Option<(String, [f64; 3])>>,
     /// Whether the material at hand makes use of alpha.
     pub(super) alpha_counts: bool,
 }
 
-impl Materials {
+impl<'d> Materials<'d> {
+    pub(super) fn new(document: &'d gltf::Document) -> Self {
+        Self { document, known: HashMap::new(), images: HashMap::new(), alpha_counts: false }
+    }
+
     pub(super) fn of(
         &mut self,
         material: &gltf::Material<'_>,
@@ -84,7 +86,7 @@ impl Materials {
             if transmission.transmission_factor() < 1.0 || transmission.transmission_texture().is_some() {
                 builder.approximate(&at, "it becomes fully transmitting");
             }
-            clearcoat::roughness(material, false, place, builder);
+            clearcoat::leave_out(material, place, builder);
             let interior = index(material, place, builder);
             let mut glass = json!({ "type": "dielectric", "interior": interior });
             let (base, mut uv_set) = self.base_colour(&surface, place, buffers, builder);
@@ -122,9 +124,7 @@ impl Materials {
             part
         };
         let metallic = Number::new(decimal(metallic), "blue", numbers.as_ref());
-        let has_coat = !matches!(metallic, Number::Value(1.0));
-        let clear = clearcoat::roughness(material, has_coat, place, builder).map(Number::Value);
-        let mut ground = part("plastic", clear.as_ref().unwrap_or(&roughness));
+        let mut ground = part("plastic", &roughness);
         ground["coat"] = index(material, place, builder);
         // The coat takes away what it reflects, and no more: the base colour is that of the whole.
         ground["internal_reflection"] = json!("uncoloured");
@@ -132,12 +132,20 @@ impl Materials {
         {
             ground = json!({ "type": "lambert", "reflectance": colour });
         }
+        let clear = ClearCoat::of(material, self, &mut uv_set, place, buffers, builder);
+        if let Some(clear) = clear.as_ref().filter(|_| !matches!(metallic, Number::Value(1.0))) {
+            ground = clear.over_ground(ground, &colour, decimal(material.ior().unwrap_or(1.5)), place, builder);
+        }
         let ground = diffuse_transmission::over(ground, material, place, builder);
         let iridescence = Iridescence::of(material, place, builder);
         let metal = || {
             let bare = part("conductor", &roughness);
-            iridescence.as_ref().map_or(bare.clone(), |iridescence| iridescence.on_metal(bare))
+            let metal = iridescence.as_ref().map_or(bare.clone(), |iridescence| iridescence.on_metal(bare));
+            clear.as_ref().map_or(metal.clone(), |clear| clear.over_metal(metal))
         };
+        if let Some(clear) = clear.as_ref().filter(|_| !matches!(metallic, Number::Value(0.0))) {
+            clear.list_on_metal(place, builder);
+        }
         if iridescence.is_some() && !matches!(metallic, Number::Value(1.0)) {
             let at = format!("{place}.extensions.KHR_materials_iridescence");
             builder.leave_out(at, "what is not metal and transmits no light has no film");
@@ -151,27 +159,6 @@ impl Materials {
             }
         };
         (value, uv_set)
-    }
-
-    /// The image of roughness and metalness: as it is laid over a surface, unless it has other texture coordinates than what else is
-    /// laid, and its texels.
-    fn numbers(
-        &mut self,
-        surface: &gltf::material::PbrMetallicRoughness<'_>,
-        place: &str,
-        uv_set: &mut Option<u32>,
-        buffers: &[Vec<u8>],
-        builder: &mut Builder<'_>,
-    ) -> Option<(Option<Value>, Image)> {
-        let info = surface.metallic_roughness_texture()?;
-        let at = format!("{place}.pbrMetallicRoughness.metallicRoughnessTexture");
-        let (image, set) = self.image(&info, &at, buffers, builder)?;
-        let texels = linear(&info.texture(), buffers, builder)?;
-        if *uv_set.get_or_insert(set) != set {
-            builder.approximate(at, "it uses another set of texture coordinates than the colour: its mean is used");
-            return Some((None, texels));
-        }
-        Some((Some(data_image(image)), texels))
     }
 
     /// Opacity and normals, which are the objects' in the format. All images of a material share one set of texture
@@ -278,116 +265,10 @@ impl Materials {
     }
 }
 
-/// The same image as data: without what is said of colours.
-fn data_image(mut image: Value) -> Value {
-    if let Some(keys) = image.as_object_mut() {
-        for key in ["type", "encoding", "factor"] {
-            keys.remove(key);
-        }
-    }
-    image
-}
-
-/// A number of a material.
-enum Number {
-    Value(f64),
-    Image(Value),
-}
-
-impl Number {
-    /// A factor on a channel of an image, if there is one: an image, where the channel varies and can be laid.
-    fn new(factor: f64, channel: &str, numbers: Option<&(Option<Value>, Image)>) -> Self {
-        let factor = factor.clamp(0.0, 1.0);
-        let Some((laid, image)) = numbers else { return Self::Value(factor) };
-        let c = if channel == "green" { 1 } else { 2 };
-        let [least, most] = image
-            .linear_texels()
-            .fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], texel| [least.min(texel[c]), most.max(texel[c])]);
-        match laid {
-            _ if least == most => Self::Value(factor * least.clamp(0.0, 1.0)),
-            None => Self::Value(factor * image.mean()[c].clamp(0.0, 1.0)),
-            Some(laid) => {
-                let mut laid = laid.clone();
-                laid["channel"] = json!(channel);
-                if factor != 1.0 {
-                    laid["factor"] = json!(factor);
-                }
-                Self::Image(laid)
-            }
-        }
-    }
-
-    /// Says it of a material as its roughness; returns whether by an image.
-    fn put_as_roughness(&self, anisotropy: Option<&Anisotropy>, material: &mut Value) -> bool {
-        match self {
-            Self::Value(roughness) => {
-                let alpha = alpha(*roughness as f32);
-                match anisotropy {
-                    Some(anisotropy) => anisotropy.put(alpha, material),
-                    None => material["alpha"] = json!(alpha),
-                }
-            }
-            Self::Image(image) => material["roughness_image"] = image.clone(),
-        }
-        matches!(self, Self::Image(_))
-    }
-}
-
-/// `KHR_materials_anisotropy`: along a direction the width α becomes α + (1 − α)s², s the strength. The direction is that of growing u,
-/// turned toward the top of the image.
-struct Anisotropy {
-    strength: f64,
-    rotation_rad: f64,
-}
-
-impl Anisotropy {
-    fn of(material: &gltf::Material<'_>, roughness: &Number, place: &str, builder: &mut Builder<'_>) -> Option<Self> {
-        let value = material.extension_value("KHR_materials_anisotropy")?;
-        let number = |key: &str| value[key].as_f64().unwrap_or(0.0);
-        let place = format!("{place}.extensions.KHR_materials_anisotropy");
-        let strength = number("anisotropyStrength").clamp(0.0, 1.0);
-        if strength == 0.0 {
-            return None;
-        }
-        if matches!(roughness, Number::Image(_)) {
-            builder.leave_out(place, "it is left out, since an image says the roughness");
-            return None;
-        }
-        if value.get("anisotropyTexture").is_some() {
-            builder.leave_out(place, "its image is left out: strength and rotation are the same everywhere");
-        }
-        Some(Self { strength, rotation_rad: number("anisotropyRotation") })
-    }
-
-    fn put(&self, alpha: f64, material: &mut Value) {
-        let alpha = alpha.max(LEAST_ALPHA);
-        material["alpha_u"] = json!((alpha + (1.0 - alpha) * self.strength * self.strength).min(1.0));
-        material["alpha_v"] = json!(alpha);
-        if self.rotation_rad != 0.0 {
-            material["tangent_rotation_deg"] = json!(self.rotation_rad.to_degrees());
-        }
-    }
-}
-
-/// A texture's texels as numbers; `None` if it cannot be read, which is said where it is drawn.
-fn linear(texture: &gltf::Texture<'_>, buffers: &[Vec<u8>], builder: &Builder<'_>) -> Option<Image> {
-    let bytes = match texture.source()?.source() {
-        Source::View { view, .. } => bytes_of(&view, buffers)?.to_vec(),
-        Source::Uri { uri, .. } => resource(uri, builder).ok()?,
-    };
-    Image::decode(&bytes, Encoding::Linear).ok().map(|(image, _)| image)
-}
-
 /// A number as the file writes it, which single precision has rounded.
 pub(super) fn decimal(value: f32) -> f64 {
     // Shortest digits that stand for the same number.
     value.to_string().parse().unwrap_or(f64::from(value))
-}
-
-/// The width of the distribution of facets: the square of glTF's roughness; below what the format resolves it is smooth.
-fn alpha(roughness: f32) -> f64 {
-    let alpha = decimal(roughness).clamp(0.0, 1.0).powi(2);
-    if alpha < LEAST_ALPHA { 0.0 } else { alpha }
 }
 
 /// The index of refraction: a number, or Cauchy's formula where the dispersion is stated.

@@ -2,6 +2,7 @@
 
 mod accessor;
 mod animation;
+mod anisotropy;
 mod base_colour;
 mod camera;
 mod clearcoat;
@@ -10,9 +11,11 @@ mod diffuse_transmission;
 mod file;
 mod image;
 mod iridescence;
+mod layers;
 mod light;
 mod material;
 mod morph;
+mod number;
 mod part;
 mod skin;
 mod variants;
@@ -56,7 +59,7 @@ pub(super) fn import(bytes: &[u8], options: &Options, builder: &mut Builder<'_>)
         animated: &animated,
         chain: Vec::new(),
         buffers: &buffers,
-        materials: Materials::default(),
+        materials: Materials::new(&file),
         skeletons: Skeletons::new(&file, &animated),
         parts: HashMap::new(),
         shape_groups: HashMap::new(),
@@ -90,7 +93,7 @@ struct Walk<'w, 'b> {
     /// What moves around the node: the map from its parent to what moves around that in turn, and its poses.
     chain: Vec<(DAffine3, Vec<(f64, Pose)>)>,
     buffers: &'w [Vec<u8>],
-    materials: Materials,
+    materials: Materials<'w>,
     skeletons: Skeletons,
     /// Parts by mesh, primitive and shape; `None` is one without triangles.
     parts: HashMap<(usize, usize, Shape), Option<MadePart>>,

@@ -1,5 +1,6 @@
 //! Models of other programs: what they say arrives in the scene, what cannot be honoured is listed with its place.
 
+mod coats;
 mod files;
 mod materials;
 mod meshes;
