@@ -10,13 +10,14 @@ use crate::Builder;
 const GLB_HEADER: u32 = 12;
 
 /// Extensions that a file may require although the library does not know them.
-const HONOURED: [&str; 7] = [
+const HONOURED: [&str; 8] = [
     "KHR_mesh_quantization",
     "KHR_materials_anisotropy",
     "KHR_materials_clearcoat",
     "KHR_materials_diffuse_transmission",
     "KHR_materials_dispersion",
     "KHR_materials_iridescence",
+    "KHR_materials_sheen",
     "KHR_materials_variants",
 ];
 

@@ -57,15 +57,21 @@ impl<'d> Materials<'d> {
         buffers: &[Vec<u8>],
         builder: &mut Builder<'_>,
     ) -> Option<(gltf::Texture<'d>, Value, u32)> {
-        let index = info["index"].as_u64().and_then(|index| usize::try_from(index).ok());
-        let Some(texture) = index.and_then(|index| self.document.textures().nth(index)) else {
-            builder.leave_out(place, format!("it names the texture {}, which does not exist", info["index"]));
-            return None;
-        };
+        let texture = self.texture(info, place, builder)?;
         let set = info["texCoord"].as_u64().and_then(|set| u32::try_from(set).ok()).unwrap_or(0);
         let transform = info["extensions"].get("KHR_texture_transform").map(TextureTransform::of_json);
         let (image, set) = self.laid(&texture, set, transform, place, buffers, builder)?;
         Some((texture, image, set))
+    }
+
+    /// The texture that such an extension names.
+    pub(super) fn texture(&self, info: &Value, place: &str, builder: &mut Builder<'_>) -> Option<gltf::Texture<'d>> {
+        let index = info["index"].as_u64().and_then(|index| usize::try_from(index).ok());
+        let texture = index.and_then(|index| self.document.textures().nth(index));
+        if texture.is_none() {
+            builder.leave_out(place, format!("it names the texture {}, which does not exist", info["index"]));
+        }
+        texture
     }
 
     /// The image of the format that a texture becomes, and its set of texture coordinates.

@@ -11,6 +11,7 @@ use super::diffuse_transmission;
 use super::image::TextureTransform;
 use super::iridescence::Iridescence;
 use super::number::{Number, data_image};
+use super::sheen;
 use crate::{Builder, light, reflectance};
 
 /// The least share of light that a medium of an imported model lets through.
@@ -87,6 +88,7 @@ impl<'d> Materials<'d> {
                 builder.approximate(&at, "it becomes fully transmitting");
             }
             clearcoat::leave_out(material, place, builder);
+            sheen::leave_out(material, place, builder);
             let interior = index(material, place, builder);
             let mut glass = json!({ "type": "dielectric", "interior": interior });
             let (base, mut uv_set) = self.base_colour(&surface, place, buffers, builder);
@@ -153,11 +155,9 @@ impl<'d> Materials<'d> {
         let value = match metallic {
             Number::Value(0.0) => ground,
             Number::Value(1.0) => metal(),
-            Number::Value(share) => json!({ "type": "blend", "first": ground, "second": metal(), "weight": share }),
-            Number::Image(image) => {
-                json!({ "type": "blend", "first": ground, "second": metal(), "weight_image": image })
-            }
+            share => share.mixed(ground, metal()),
         };
+        let value = self.with_sheen(value, material, &mut uv_set, (place, buffers, clear.is_some()), builder);
         (value, uv_set)
     }
 
@@ -308,12 +308,13 @@ fn list_unhonoured(material: &gltf::Material<'_>, place: &str, builder: &mut Bui
     list(weak && opaque, "extensions.KHR_materials_transmission", "a factor below 0.5 becomes opaque");
     let coloured = material.volume().is_some_and(|volume| volume.attenuation_distance().is_finite());
     list(coloured && opaque, "extensions.KHR_materials_volume", "it is ignored: the material does not transmit light");
-    const KNOWN: [&str; 5] = [
+    const KNOWN: [&str; 6] = [
         "KHR_materials_anisotropy",
         "KHR_materials_clearcoat",
         "KHR_materials_diffuse_transmission",
         "KHR_materials_dispersion",
         "KHR_materials_iridescence",
+        "KHR_materials_sheen",
     ];
     for key in material.extensions().into_iter().flat_map(|map| map.keys()) {
         list(!KNOWN.contains(&key.as_str()), &format!("extensions.{key}"), no);

@@ -17,6 +17,7 @@ mod material;
 mod morph;
 mod number;
 mod part;
+mod sheen;
 mod skin;
 mod variants;
 

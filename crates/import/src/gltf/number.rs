@@ -143,11 +143,15 @@ impl Number {
 
 /// A texture's texels as numbers; `None` if it cannot be read, which is said where it is drawn.
 fn linear(texture: &gltf::Texture<'_>, buffers: &[Vec<u8>], builder: &Builder<'_>) -> Option<Image> {
-    let bytes = match texture.source()?.source() {
-        Source::View { view, .. } => bytes_of(&view, buffers)?.to_vec(),
-        Source::Uri { uri, .. } => resource(uri, builder).ok()?,
-    };
-    Image::decode(&bytes, Encoding::Linear).ok().map(|(image, _)| image)
+    Image::decode(&bytes(texture, buffers, builder)?, Encoding::Linear).ok().map(|(image, _)| image)
+}
+
+/// The bytes of a texture's file.
+pub(super) fn bytes(texture: &gltf::Texture<'_>, buffers: &[Vec<u8>], builder: &Builder<'_>) -> Option<Vec<u8>> {
+    match texture.source()?.source() {
+        Source::View { view, .. } => bytes_of(&view, buffers).map(<[u8]>::to_vec),
+        Source::Uri { uri, .. } => resource(uri, builder).ok(),
+    }
 }
 
 /// The width of the distribution of facets: the square of glTF's roughness; below what the format resolves it is smooth.

@@ -6,6 +6,7 @@ mod materials;
 mod meshes;
 mod morphs;
 mod shapes;
+mod sheens;
 mod skins;
 mod studio;
 mod variants;
@@ -215,7 +216,7 @@ fn what_is_not_honoured_is_listed_with_its_path() {
     let mut model = model();
     model["animations"] = json!([{ "channels": [], "samplers": [] }]);
     model["materials"][1]["pbrMetallicRoughness"]["baseColorFactor"] = json!([1, 0, 0, 1]);
-    model["materials"][2]["extensions"]["KHR_materials_sheen"] = json!({});
+    model["materials"][2]["extensions"]["KHR_materials_sheen"] = json!({ "sheenColorFactor": [1, 1, 1] });
     let imported = imported(&model).unwrap();
     let places: Vec<&str> = imported.left_out.iter().map(|l| l.place.as_str()).collect();
     for expected in [
