@@ -39,8 +39,12 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Gltf, String> {
     Ok(Gltf { document, blob })
 }
 
-/// Refuses primitives that name accessors which are not there: the library's own check looks them up before it counts.
-pub(super) fn check_primitives(bytes: &[u8]) -> Result<(), String> {
+/// What morph targets say that is made use of; tangents follow from what is moved.
+const MOVED: [&str; 3] = ["POSITION", "NORMAL", "TANGENT"];
+
+/// Refuses primitives that name accessors which are not there: the library's own check looks them up before it counts. Lists what else morph
+/// targets say, which the library does not read.
+pub(super) fn check_primitives(bytes: &[u8], builder: &mut Builder<'_>) -> Result<(), String> {
     let glb;
     let text = if bytes.starts_with(b"glTF") {
         // The library subtracts the header's own length before it compares.
@@ -59,6 +63,14 @@ pub(super) fn check_primitives(bytes: &[u8]) -> Result<(), String> {
     let count = root["accessors"].as_array().map_or(0, Vec::len) as u64;
     for (i, mesh) in root["meshes"].as_array().into_iter().flatten().enumerate() {
         for (j, primitive) in mesh["primitives"].as_array().into_iter().flatten().enumerate() {
+            for (k, target) in primitive["targets"].as_array().into_iter().flatten().enumerate() {
+                for key in target.as_object().into_iter().flat_map(|map| map.keys()) {
+                    if !MOVED.contains(&key.as_str()) {
+                        let place = format!("$.meshes[{i}].primitives[{j}].targets[{k}].{key}");
+                        builder.leave_out(place, "it is ignored: morph targets move positions and normals");
+                    }
+                }
+            }
             let mut named: Vec<Value> = vec![primitive["indices"].clone()];
             for attributes in list(&primitive["targets"]).iter().chain([&primitive["attributes"]]) {
                 named.extend(attributes.as_object().into_iter().flat_map(|map| map.values().cloned()));

@@ -43,7 +43,7 @@ const MAX_MOVING: usize = 7;
 
 pub(super) fn import(bytes: &[u8], options: &Options, builder: &mut Builder<'_>) -> Result<(), String> {
     let moment = options.moment.as_ref();
-    check_primitives(bytes)?;
+    check_primitives(bytes, builder)?;
     let file = parse(bytes)?;
     check_images(&file)?;
     check_lights(&file)?;

@@ -35,6 +35,12 @@ fn weights_of_a_mesh_move_its_vertices_and_those_of_a_node_come_first() {
     model.json["nodes"][0]["translation"] = json!([0, 3, 0]);
     let expected: Vec<_> = moved(&[0.0, 0.0, -0.5]).iter().map(|[x, y, z]| [*x, y + 3.0, *z]).collect();
     near(&vertices(&model.import().unwrap()), &expected);
+    // What else targets say is listed; tangents are made of what is moved.
+    model.primitive()["targets"][1]["TEXCOORD_0"] = json!(0);
+    model.primitive()["targets"][1]["TANGENT"] = json!(0);
+    let listed = said(&model.import().unwrap());
+    assert!(listed.starts_with("$.meshes[0].primitives[0].targets[1].TEXCOORD_0: it is ignored"), "{listed}");
+    assert_eq!(listed.lines().count(), 1);
     // Without weights it is as it is.
     model.json["nodes"][0] = json!({ "name": "a", "mesh": 0 });
     model.json["meshes"][0].as_object_mut().unwrap().remove("weights");
