@@ -11,7 +11,7 @@ use super::diffuse_transmission;
 use super::image::TextureTransform;
 use super::iridescence::Iridescence;
 use super::number::{Number, data_image};
-use super::sheen;
+use super::sheen::{self, Fit};
 use crate::{Builder, light, reflectance};
 
 /// The least share of light that a medium of an imported model lets through.
@@ -36,6 +36,8 @@ pub(super) struct Look {
 #[derive(Debug)]
 pub(super) struct Materials<'d> {
     pub(super) document: &'d gltf::Document,
+    /// What stands for sheen, by a hundred times its roughness.
+    pub(super) fits: HashMap<u32, Fit>,
     known: HashMap<Option<usize>, Look>,
     pub(super) images: HashMap<usize, Option<(String, [f64; 3])>>,
     /// Whether the material at hand makes use of alpha.
@@ -44,7 +46,7 @@ pub(super) struct Materials<'d> {
 
 impl<'d> Materials<'d> {
     pub(super) fn new(document: &'d gltf::Document) -> Self {
-        Self { document, known: HashMap::new(), images: HashMap::new(), alpha_counts: false }
+        Self { document, fits: HashMap::new(), known: HashMap::new(), images: HashMap::new(), alpha_counts: false }
     }
 
     pub(super) fn of(
