@@ -158,7 +158,20 @@ fn image_scales() -> Vec<Truth> {
         let height = (0.45 * SENSOR / near.height_on_film(near_mm, 1.0).abs() * 1e3).round() * 1e-3;
         lit(far.height_on_film(near_mm, height), SENSOR)
     });
-    vec![thick, from_file, near_truth, order()]
+    vec![thick, from_file, near_truth, order(), mirrored(&form)]
+}
+
+/// A lamp that fills what is to the right of the axis, in a mirrored picture.
+fn mirrored(lens: &Value) -> Truth {
+    let (distance, reach) = (1e3, 200.0);
+    let further = json!({ "focus_distance_m": distance, "mirrored": true });
+    let right = parallelogram([0.0, -reach, -distance], [reach, 0.0, 0.0], [0.0, 2.0 * reach, 0.0]);
+    let scene = Scene::camera(camera(lens, SENSOR * 1e-3, &further)).film(8, 8).lamp(right, black(), 1.0, "both");
+    Truth::new("mirrored-picture-of-a-compound-lens", &scene, 1.0, "1")
+        .because("What is to the right of the lens is to the left in a mirrored picture. Three of its eight columns are read.")
+        .or_else("not mirrored", 0.0)
+        .reads_pixels([0, 3, 0, 8])
+        .allows(9e-5, PARAXIAL)
 }
 
 /// A meniscus, which is another lens turned round.
