@@ -163,6 +163,12 @@ fn pictures_that_cannot_be_used_exit_2_with_the_reason() {
     etalon_line("verify --images {}", [&at("nowhere")]).expect(2).says(["nowhere"]);
     etalon_line("verify --images {} --thorough", [folder.path()]).expect(2).says(["--thorough"]);
     etalon(["verify", "no-such-truth"]).expect(2).says(["no-such-truth"]);
+    etalon_line("verify media --export {}", [&at("media")]).expect(0);
+    let listed: serde_json::Value = serde_json::from_slice(&std::fs::read(at("media/truths.json")).unwrap()).unwrap();
+    let listed = listed["truths"].as_array().unwrap();
+    let in_media = |claim: &serde_json::Value| claim == "scattering" || claim == "absorption";
+    let all = listed.iter().all(|truth| truth["claims"].as_array().unwrap().iter().any(in_media));
+    assert!(all && listed.len() > 80, "{}", listed.len());
     for (channels, size, why) in [
         (vec![("Y", 2.25)], (32, 32), "noisy"),
         (vec![("Y", 2.25), ("Error.Y", 0.01)], (32, 16), "32 × 16"),

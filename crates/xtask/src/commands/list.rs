@@ -165,6 +165,13 @@ pub(super) const COMMANDS: &[(&str, &[Named])] = &[
                 Ignored { package: "etalon-oracle", target: &["--test", "mutants"], name: "hundred" },
             ),
             named(
+                "false-alarms",
+                "[--seeds N] [--only WORD …]",
+                "etalon verify with many seeds: whether a truth fails by chance, or all seeds together find a bias",
+                "8 min a seed",
+                Script("tests/false-alarms.py"),
+            ),
+            named(
                 "faults",
                 "list | check | build | run [NAME …] | table",
                 "wrong expressions of tests/faults, one at a time: whether verify or the tests notice",
