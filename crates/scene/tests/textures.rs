@@ -38,10 +38,13 @@ fn images_and_patterns_may_lie_turned_and_sheared() {
     let keys = r#""uv_matrix": [[0.5, -2], [3, 0.25]], "uv_offset": [0.125, 4]"#;
     // The two texels of a gradient along v have their centres at a quarter and three quarters.
     let halved = UvMap { matrix: [map.matrix[0], [1.5, 0.125]], offset: [0.125, 2.25] };
+    // The texels of noise have their centres at the points of its lattice, of 4 by 8 cells.
+    let centred = UvMap { offset: [0.25, 4.0625], ..map };
     for (kind, expected) in [
         (r#""image", "file": "files/chequers.png""#, map),
         (r#""checker", "first": 0.25, "second": 0.5"#, map),
         (r#""gradient", "from": 0.25, "to": 0.5, "along": "v""#, halved),
+        (r#""noise", "first": 0.25, "second": 0.5, "cells": [2, 4], "octaves": 2"#, centred),
     ] {
         let loaded = scene_with(&format!(r#"{{"type": {kind}, {keys}}}"#), SQUARE, r#"{"grey": 0.5}"#).unwrap();
         let MaterialKind::Lambert { reflectance } = &loaded.scene.materials[0].kind else { panic!("diffuse") };
@@ -87,6 +90,9 @@ fn what_is_wrong_with_an_image_is_said_where_it_is_named() {
         (r#"{"type": "image", "file": "files/chequers.png", "factor": [-1, 1, 1]}"#, SQUARE, Code::OutOfRange),
         (r#"{"type": "image", "file": "files/chequers.png", "uv_scale": [1e9, 1]}"#, SQUARE, Code::OutOfRange),
         (r#"{"type": "checker", "first": 0, "second": 1, "uv_matrix": [[1, 0], [-1e9, 1]]}"#, SQUARE, Code::OutOfRange),
+        (r#"{"type": "noise", "first": 0, "second": 1.5}"#, SQUARE, Code::Reflectance),
+        (r#"{"type": "noise", "first": 0, "second": 1, "cells": [2049, 8]}"#, SQUARE, Code::OutOfRange),
+        (r#"{"type": "noise", "first": 0, "second": 1, "cells": [8, 512], "octaves": 4}"#, SQUARE, Code::OutOfRange),
         (
             r#"{"type": "checker", "first": 0, "second": 1, "uv_matrix": [[1, 0], [0, 1]], "uv_scale": [1, 1]}"#,
             SQUARE,

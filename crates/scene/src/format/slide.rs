@@ -57,7 +57,7 @@ pub(super) fn behind_slide<'f>(
     let image = match spectra.resolve_texture(written, Role::Emission, files, reader)? {
         SpectrumTexture::Image(image) => image,
         SpectrumTexture::Uniform(_) | SpectrumTexture::VertexColours { .. } => {
-            let message = "a slide is an image, a checker or a gradient";
+            let message = "a slide is an image, a checker, a gradient or noise";
             reader.error(Code::KeyConflict, written.at().head(), message.to_owned());
             return None;
         }

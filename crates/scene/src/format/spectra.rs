@@ -1,6 +1,7 @@
 //! What spectra become where they are used.
 
 mod image;
+mod noise;
 
 use std::collections::{HashMap, HashSet};
 
@@ -101,7 +102,10 @@ impl<'f> Spectra<'f> {
             SpectrumForm::Object(SpectrumObject::Tabulated(table)) => self.table(table, used, reader),
             SpectrumForm::Object(SpectrumObject::Rgb(colour)) => self.rgb(colour, used, reader),
             SpectrumForm::Object(
-                SpectrumObject::Image(_) | SpectrumObject::Checker(_) | SpectrumObject::Gradient(_),
+                SpectrumObject::Image(_)
+                | SpectrumObject::Checker(_)
+                | SpectrumObject::Gradient(_)
+                | SpectrumObject::Noise(_),
             ) => {
                 let hint = "an image can give the reflectance of a material or the emission of a surface";
                 self.complain(

@@ -9,7 +9,7 @@ use crate::texture::{Encoding, TextureFilter, Wrap};
 
 use crate::json::{
     Code, Decode, Kind, List, Node, NonNegative, Optional, Positive, Reader, Required, Rule, SchemaBuilder,
-    SchemaValue, Span, Spanned, by_json_type,
+    SchemaValue, Span, Spanned, Whole, by_json_type,
 };
 
 crate::number! {
@@ -182,6 +182,31 @@ crate::record! {
 }
 
 crate::record! {
+    /// Value noise over the texture coordinates, where an image may stand: random numbers at the points of a lattice, with an even change between them.
+    pub(crate) struct NoiseSpectrum + comment {
+        /// Where the noise is 0: a number or a linear Rec. 709 colour.
+        first: Required<TextureColour>,
+        /// Where it is 1.
+        second: Required<TextureColour>,
+        /// Cells of the lattice in a unit, along u and v; then it repeats.
+        cells: Required<[Spanned<Whole<1, MOST_CELLS>>; 2]> = "[8, 8]",
+        /// How many lattices are added: each is twice as fine as the one before, and half as strong.
+        octaves: Required<Whole<1, 12>> = "1",
+        /// Chooses the numbers.
+        seed: Required<Whole<0, { u32::MAX as u64 }>> = "1",
+        /// Factors on the texture coordinates: 2 shows twice as many cells.
+        uv_scale: Required<[f64; 2]> = "[1, 1]",
+        /// Instead: rows of a matrix that the texture coordinates are multiplied by, which may turn and shear it.
+        uv_matrix: Optional<[[f64; 2]; 2]>,
+        /// Added to the texture coordinates after that.
+        uv_offset: Required<[f64; 2]> = "[0, 0]",
+    } with [Rule::NotBoth("uv_scale", "uv_matrix")]
+}
+
+/// Most cells of noise along a side, of its finest lattice.
+pub(crate) const MOST_CELLS: u64 = 2048;
+
+crate::record! {
     /// The colours of the vertices of a mesh, interpolated over each triangle: for what a material reflects.
     pub(crate) struct VertexColoursSpectrum + comment {
         /// Factor on each channel.
@@ -272,6 +297,7 @@ crate::variants! {
         "image" => Image(ImageSpectrum),
         "checker" => Checker(CheckerSpectrum),
         "gradient" => Gradient(GradientSpectrum),
+        "noise" => Noise(NoiseSpectrum),
         "vertex-colours" => VertexColours(VertexColoursSpectrum),
     }
 }
@@ -364,6 +390,7 @@ impl SpectrumForm {
             Self::Object(SpectrumObject::Image(s)) => s.at,
             Self::Object(SpectrumObject::Checker(s)) => s.at,
             Self::Object(SpectrumObject::Gradient(s)) => s.at,
+            Self::Object(SpectrumObject::Noise(s)) => s.at,
             Self::Object(SpectrumObject::VertexColours(s)) => s.at,
         }
     }

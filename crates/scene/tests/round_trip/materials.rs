@@ -50,6 +50,8 @@ fn materials_and_spectra() {
             "jar",
             "bronzed",
             "car",
+            "clouds",
+            "haze",
             "pot",
             "objects[4].material"
         ]

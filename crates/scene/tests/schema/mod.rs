@@ -169,7 +169,7 @@ fn every_key_of_the_schema_has_a_description_and_is_exercised() {
         "thickness_image",
         "weight_image",
     ];
-    let of_skies = ["forward", "mirrored", "projection", "rotation_deg"];
+    let of_skies = ["forward", "projection", "rotation_deg"];
     // The tests of compound lenses have these.
     let of_lenses = [
         "aspheric",

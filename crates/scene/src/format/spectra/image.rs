@@ -41,6 +41,9 @@ impl<'f> Spectra<'f> {
             SpectrumForm::Object(SpectrumObject::Gradient(form)) => {
                 self.gradient(form, used, reader).map(SpectrumTexture::Image)
             }
+            SpectrumForm::Object(SpectrumObject::Noise(form)) => {
+                self.noise(form, used, reader).map(SpectrumTexture::Image)
+            }
             SpectrumForm::Object(SpectrumObject::VertexColours(form)) if role == Role::Reflectance => {
                 self.vertex_colours(form, files, reader)
             }
@@ -165,7 +168,13 @@ impl<'f> Spectra<'f> {
     }
 
     /// A colour as a texel, if it is possible in its role.
-    fn texel(&mut self, colour: &TextureColour, at: Span, used: Use, reader: &mut Reader<'_>) -> Option<[f32; 3]> {
+    pub(super) fn texel(
+        &mut self,
+        colour: &TextureColour,
+        at: Span,
+        used: Use,
+        reader: &mut Reader<'_>,
+    ) -> Option<[f32; 3]> {
         let rgb = colour.rgb();
         let (range, code, not) = possible(used.role);
         if rgb.iter().all(|channel| range.contains(channel)) {
