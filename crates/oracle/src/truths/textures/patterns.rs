@@ -73,34 +73,34 @@ pub(super) fn patterns() -> Vec<Truth> {
     list
 }
 
-/// Noise of 3 by 2 cells: one of them, and all of two octaves but the last column.
+/// A cell of noise of 3 by 4 cells.
 fn noise(plate: impl Fn(Value) -> Scene) -> Vec<Truth> {
     let (first, second, seed) = (0.1, 0.9, 5);
-    // Both scale by a third and a half, and shift as much.
+    // Both scale by a third and a quarter, and shift as much.
     let form = |placement: Value, octaves: u32| {
         let mut noise = json!({
-            "type": "noise", "first": first, "second": second, "cells": [3, 2], "octaves": octaves, "seed": seed,
-            "uv_offset": [1.0 / 3.0, 0.5],
+            "type": "noise", "first": first, "second": second, "cells": [3, 4], "octaves": octaves, "seed": seed,
+            "uv_offset": [1.0 / 3.0, 0.25],
         });
         noise.as_object_mut().expect("an object").extend(placement.as_object().expect("an object").clone());
         plate(noise)
     };
     let colour = move |t: f64| first + t * (second - first);
     let number =
-        move |octave: u64, i: u64, j: u64| lattice_number(seed, octave, [i % (3 << octave), j % (2 << octave)]);
+        move |octave: u64, i: u64, j: u64| lattice_number(seed, octave, [i % (3 << octave), j % (4 << octave)]);
     let corners = move |octave: u64, i: u64, j: u64| {
         0.25 * [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(di, dj)| number(octave, i + di, j + dj)).iter().sum::<f64>()
     };
-    // The cell (1, 1): u from 1/3 to 2/3, v from ½ to 1.
-    let one = form(json!({ "uv_scale": [1.0 / 3.0, 0.5] }), 1);
+    // The cell (1, 1): u from 1/3 to 2/3, v from ¼ to ½.
+    let one = form(json!({ "uv_scale": [1.0 / 3.0, 0.25] }), 1);
     let cell = corners(0, 1, 1);
     // Within it, 2 by 2 cells of the second octave.
-    let two = form(json!({ "uv_matrix": [[1.0 / 3.0, 0], [0, 0.5]] }), 2);
+    let two = form(json!({ "uv_matrix": [[1.0 / 3.0, 0], [0, 0.25]] }), 2);
     let finer = move || 0.25 * [(2, 2), (3, 2), (2, 3), (3, 3)].map(|(i, j)| corners(1, i, j)).iter().sum::<f64>();
     // By the definition, at places of the cell.
     let by_places = move |octaves: u32| {
         let bilinear = |octave: u64, u: f64, v: f64| {
-            let [x, y] = [u * f64::from(3_u32 << octave), v * f64::from(2_u32 << octave)];
+            let [x, y] = [u * f64::from(3_u32 << octave), v * f64::from(4_u32 << octave)];
             let (i, j) = (x.floor() as u64, y.floor() as u64);
             let mix = |a: f64, b: f64, t: f64| a + t * (b - a);
             let row = |j: u64| mix(number(octave, i, j), number(octave, i + 1, j), x - x.floor());
@@ -109,7 +109,7 @@ fn noise(plate: impl Fn(Value) -> Scene) -> Vec<Truth> {
         let n = 40;
         let place = |k: u32| (f64::from(k) + 0.5) / f64::from(n);
         let at = |k: u32| {
-            let (u, v) = ((1.0 + place(k % n)) / 3.0, 0.5 + 0.5 * place(k / n));
+            let (u, v) = ((1.0 + place(k % n)) / 3.0, (1.0 + place(k / n)) / 4.0);
             let (sum, weights) = (0..octaves).fold((0.0, 0.0), |(sum, weights), octave| {
                 let weight = f64::from(octave).exp2().recip();
                 (sum + weight * bilinear(u64::from(octave), u, v), weights + weight)
@@ -124,9 +124,9 @@ fn noise(plate: impl Fn(Value) -> Scene) -> Vec<Truth> {
         Truth::new("noise-of-one-octave", &one, colour(cell), "first + (second − first)(v₁₁ + v₂₁ + v₁₂ + v₂₂)/4")
             .because(because)
             .confirmed("1600 places", 1e-9, move || by_places(1))
-            .or_else("rows from the top", colour(corners(0, 1, 0)))
+            .or_else("rows from the top", colour(corners(0, 1, 2)))
             .or_else("half a cell off along u", colour(0.5 * (cell + corners(0, 2, 1))))
-            .or_else("half a cell off along v", colour(0.5 * (cell + corners(0, 1, 0))))
+            .or_else("half a cell off along v", colour(0.5 * (cell + corners(0, 1, 2))))
             .or_else("colours exchanged", colour(1.0 - cell))
             .sees(2e-3),
         Truth::new(
