@@ -2,6 +2,7 @@
 //!
 //! An image as the albedo of a convex Lambert body under a sky of radiance 1 is seen as it is: each place shows its own albedo.
 
+mod disks_and_cylinders;
 mod patterns;
 mod places;
 mod shown;
@@ -23,6 +24,7 @@ pub(super) fn truths() -> Vec<Truth> {
     list.extend(places::wraps());
     list.extend(places::round());
     list.extend(places::placed());
+    list.extend(disks_and_cylinders::truths());
     list.extend(values::channels());
     list.extend(values::numbers());
     list.extend(values::masks());
