@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use serde_json::{Value, json};
 
 use super::{
-    Claim, Truth, air, densities,
+    Claim, Truth, air, densities, published_media,
     scene::{Scene, black, block, glass, level_square, rough_glass, solid, sphere},
 };
 use crate::quadrature::interval;
@@ -21,6 +21,7 @@ pub(super) fn truths() -> Vec<Truth> {
     list.extend(scattered_once_in_slabs());
     list.extend([glow_of_a_lamp(), glow_in_forward_fog(), mean_way_in_a_ball(), glowing_ball(), glowing_fog()]);
     list.extend(densities::truths());
+    list.extend(published_media::truths());
     list.extend(air::truths());
     list.into_iter().map(|truth| truth.claims(Claim::Scattering)).collect()
 }
@@ -38,7 +39,7 @@ pub(super) fn isotropic() -> Value {
     json!({ "type": "isotropic" })
 }
 
-fn forward(g: f64) -> Value {
+pub(super) fn forward(g: f64) -> Value {
     json!({ "type": "henyey-greenstein", "g": g })
 }
 
@@ -123,7 +124,8 @@ pub(super) fn slab(depth_m: f64, medium: &Value, mu: f64) -> Scene {
         .thing(json!({ "shape": block([-1e4, -1e4, -depth_m], [1e4, 1e4, 0.0]), "material": boundary(medium) }))
 }
 
-const WIDE: &str = "the slab is 2·10⁴ m wide, not endless: light from beyond its edges is below 1e-6; single precision";
+pub(super) const WIDE: &str =
+    "the slab is 2·10⁴ m wide, not endless: light from beyond its edges is below 1e-6; single precision";
 
 fn half_spaces() -> Vec<Truth> {
     let mut list = Vec::new();

@@ -64,6 +64,7 @@ mod principled;
 mod principled_lobes;
 mod principled_tints;
 mod prisms;
+mod published_media;
 mod rami;
 mod relief;
 mod rough_surfaces;
