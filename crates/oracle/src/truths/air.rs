@@ -62,6 +62,7 @@ fn by_a_polariser() -> Vec<Truth> {
 type Slabs = LazyLock<[Air; 2], Box<dyn FnOnce() -> [Air; 2] + Send>>;
 
 /// A slab of air above a ground: its depth, cosines of sun and eye, azimuth between the ways of both, degrees, albedo of the ground.
+#[derive(Clone, Copy)]
 struct Case {
     name: &'static str,
     depth: f64,
@@ -70,6 +71,10 @@ struct Case {
     eye: f64,
     azimuth_deg: f64,
     ground: f64,
+    /// The Stokes parameters that are read, by their numbers.
+    parameters: &'static [usize],
+    /// The relative bias that a reading of the radiance must be able to see, and of what is polarised, which has less of light and as much noise.
+    must_see: [f64; 2],
 }
 
 impl Case {
@@ -105,18 +110,18 @@ impl Case {
 
     /// With the slab, and the same of a renderer that drops polarisation, made when a value is asked for.
     fn truths(&self, slabs: &Arc<Slabs>) -> Vec<Truth> {
-        let &Self { name, depth, sun, leaving, eye, azimuth_deg, ground } = self;
+        let &Self { name, depth, sun, leaving, eye, azimuth_deg, ground, .. } = self;
         let azimuth = azimuth_deg.to_radians();
         let scene = self.scene();
-        let parameters = [Quantity::Radiance, Quantity::Stokes1, Quantity::Stokes2];
-        let own = Self { ..*self };
+        let own = *self;
         let by_orders = Arc::new(LazyLock::new(move || {
             own.in_the_picture(AirByOrders::new(depth, sun, ground).seen(leaving, eye, azimuth))
         }));
         let mut list = Vec::new();
-        for (k, parameter) in parameters.into_iter().enumerate() {
+        for &k in self.parameters {
+            let parameter = [Quantity::Radiance, Quantity::Stokes1, Quantity::Stokes2][k];
             let by_orders = Arc::clone(&by_orders);
-            let (case, slabs) = (Self { ..*self }, Arc::clone(slabs));
+            let (case, slabs) = (own, Arc::clone(slabs));
             let work_out = move || {
                 let [values, forgetful] =
                     slabs.each_ref().map(|slab| case.in_the_picture(slab.seen(sun, leaving, eye, azimuth, ground)));
@@ -145,8 +150,7 @@ impl Case {
             )
             .reads(parameter)
             .claims(Claim::CarriesPolarisation)
-            // What is polarised has less of light, and as much noise.
-            .sees(if k == 0 { 0.03 } else { 0.06 });
+            .sees(self.must_see[k.min(1)]);
             list.push(truth);
         }
         list
@@ -164,7 +168,10 @@ fn slabs() -> Vec<Truth> {
         eye,
         azimuth_deg,
         ground,
+        parameters: &[0, 1, 2],
+        must_see: [0.03, 0.06],
     };
+    let two = |case: Case, parameters| Case { parameters, must_see: [0.05, 0.1], ..case };
     let cases = [
         case("air-of-depth-0.5-from-above", 0.5, 0.2, Upward, 0.8, 60.0, 0.0),
         case("air-of-depth-0.5-from-below", 0.5, 0.8, Downward, 0.4, 120.0, 0.25),
@@ -172,6 +179,9 @@ fn slabs() -> Vec<Truth> {
         case("air-of-depth-4-from-above", 4.0, 0.8, Upward, 0.4, 60.0, 0.0),
         case("air-of-depth-1-from-below", 1.0, 0.4, Downward, 0.8, 90.0, 0.0),
         case("air-of-depth-1-above-a-grey-ground", 1.0, 0.8, Upward, 0.8, 30.0, 0.25),
+        two(case("air-of-depth-0.5-above-a-bright-ground", 0.5, 0.4, Downward, 0.8, 120.0, 0.8), &[0, 2]),
+        two(case("air-of-depth-4-above-a-grey-ground", 4.0, 0.4, Upward, 0.8, 60.0, 0.25), &[0, 2]),
+        two(case("air-of-depth-4-above-a-bright-ground", 4.0, 0.8, Upward, 0.4, 60.0, 0.8), &[0, 2]),
     ];
     const COSINES: [f64; 3] = [0.2, 0.4, 0.8];
     let of_depth = |depth: f64| {
