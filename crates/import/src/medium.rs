@@ -60,13 +60,13 @@ fn floats(vol: &[u8]) -> impl Iterator<Item = f64> {
     values.chunks_exact(4).map(|bytes| f64::from(f32::from_le_bytes(bytes.try_into().expect("four bytes"))))
 }
 
-/// A .vol file of densities, x running first.
-pub(crate) fn vol(cells: [u32; 3], box_m: [[f64; 3]; 2], densities: &[f64]) -> Vec<u8> {
+/// A .vol file of numbers, `channels` of them for each cell, x running first.
+pub(crate) fn vol(cells: [u32; 3], channels: u32, box_m: [[f64; 3]; 2], values: &[f64]) -> Vec<u8> {
     let mut bytes = b"VOL\x03".to_vec();
-    for word in [1, cells[0], cells[1], cells[2], 1] {
+    for word in [1, cells[0], cells[1], cells[2], channels] {
         bytes.extend(word.to_le_bytes());
     }
-    for number in box_m.as_flattened().iter().chain(densities) {
+    for number in box_m.as_flattened().iter().chain(values) {
         bytes.extend((*number as f32).to_le_bytes());
     }
     bytes

@@ -121,7 +121,7 @@ impl<'a> Walk<'a, '_, '_> {
     fn box_of_ones(&mut self, stated: &'a Element) -> Result<Value, String> {
         let volume = if stated.tag == "ref" { self.ids.of(stated)? } else { stated };
         let map = if volume.tag == "volume" { self.placement(volume)? } else { DAffine3::IDENTITY };
-        let file = self.builder.add_file("density", "vol", vol([2; 3], [[0.0; 3], [1.0; 3]], &[1.0; 8]));
+        let file = self.builder.add_file("density", "vol", vol([2; 3], 1, [[0.0; 3], [1.0; 3]], &[1.0; 8]));
         let mut density = json!({ "type": "grid", "file": file });
         let transform = steps(&map);
         if !transform.is_null() {

@@ -5,81 +5,90 @@ use std::rc::Rc;
 use serde_json::{Value, json};
 
 use super::Reading;
+use super::measured::measured;
 use super::parameters::Parameters;
-use crate::matrix::steps;
-use crate::medium::vol;
+use crate::coefficient;
 
 impl Reading<'_, '_> {
     pub(super) fn named_medium(&mut self, name: String, list: &Parameters, place: &str) -> Result<(), String> {
         let kind = list.string("type").unwrap_or("homogeneous").to_owned();
         let scale = list.number("scale")?.unwrap_or(1.0);
-        if list.string("preset").is_some() {
-            self.builder.leave_out(place, "the preset is left out: the default coefficients stand for it");
-        }
         let g = list.number("g")?.unwrap_or(0.0);
-        let mut medium = json!({
-            "absorption_per_m": self.coefficient(list, "sigma_a", [0.0011, 0.0024, 0.014], scale)?,
-            "scattering_per_m": self.coefficient(list, "sigma_s", [2.55, 3.21, 3.77], scale)?,
-        });
+        let mut medium = match kind.as_str() {
+            "homogeneous" => {
+                let mut medium = match self.preset(list, scale, place) {
+                    Some(medium) => medium,
+                    None => self.coefficients(list, scale)?,
+                };
+                if list.get("Le").is_some() {
+                    // There, too, a medium emits this times its absorption.
+                    let factor = list.number("Lescale")?.unwrap_or(1.0);
+                    medium["source_radiance"] = self.emitted(list, "Le", factor)?;
+                }
+                medium
+            }
+            "uniformgrid" => {
+                let mut medium = self.coefficients(list, scale)?;
+                medium["density"] = self.uniform_grid(list, place)?;
+                medium
+            }
+            "rgbgrid" => self.rgb_grid(list, scale, place)?,
+            other => {
+                self.builder.leave_out(
+                    place,
+                    format!(
+                        "a medium of the kind \"{other}\" cannot be read: what \"{name}\" should fill stays clear, and neither scatters, \
+                         absorbs nor emits light"
+                    ),
+                );
+                list.mark_all();
+                self.media.insert(name, None);
+                return Ok(());
+            }
+        };
         if g != 0.0 {
             medium["phase"] = json!({ "type": "henyey-greenstein", "g": g });
         }
-        match kind.as_str() {
-            "homogeneous" => {
-                if list.get("Le").is_some() {
-                    let factor = list.number("Lescale")?.unwrap_or(1.0);
-                    // There the coefficient of absorption is no factor of what a medium emits, but for a grid's.
-                    self.builder
-                        .approximate(place, "Le becomes a source radiance: the medium emits it times its absorption");
-                    medium["source_radiance"] = self.emitted(list, "Le", factor)?;
-                }
-            }
-            "uniformgrid" => {
-                let count = |key: &str| -> Result<u32, String> {
-                    let count = list.number(key)?.unwrap_or(1.0);
-                    match count {
-                        1.0..=4096.0 => Ok(count as u32),
-                        _ => Err(format!("{place}: \"{key}\" is {count}: 1 to 4096 cells are read")),
-                    }
-                };
-                let cells = [count("nx")?, count("ny")?, count("nz")?];
-                let densities = list.numbers("density").unwrap_or(&[]);
-                let wanted = cells.iter().map(|count| u64::from(*count)).product::<u64>();
-                if densities.len() as u64 != wanted {
-                    let found = densities.len();
-                    return Err(format!("{place}: {wanted} cells have {found} densities"));
-                }
-                let box_m = [list.triple("p0")?.unwrap_or([0.0; 3]), list.triple("p1")?.unwrap_or([1.0; 3])];
-                let file = vol(cells, box_m, densities);
-                let file = self.builder.add_file("density", "vol", file);
-                let mut density = json!({ "type": "grid", "file": file });
-                let transform = steps(&self.to_world());
-                if !transform.is_null() {
-                    density["transform"] = transform;
-                }
-                medium["density"] = density;
-            }
-            other => {
-                self.builder.leave_out(place, format!("the medium \"{other}\" is not known: it is left out"));
-                list.mark_all();
-                return Ok(());
-            }
-        }
         list.list_unused(self.builder);
-        self.media.insert(name, Rc::new(medium));
+        self.media.insert(name, Some(Rc::new(medium)));
         Ok(())
+    }
+
+    /// Coefficients as they are stated; 1 where they are not.
+    fn coefficients(&mut self, list: &Parameters, scale: f64) -> Result<Value, String> {
+        Ok(json!({
+            "absorption_per_m": self.coefficient(list, "sigma_a", scale)?,
+            "scattering_per_m": self.coefficient(list, "sigma_s", scale)?,
+        }))
+    }
+
+    /// A measured medium, by its name. What else is stated of its coefficients counts for nothing there.
+    fn preset(&mut self, list: &Parameters, scale: f64, place: &str) -> Option<Value> {
+        let name = list.string("preset")?;
+        let Some([scattering, absorption]) = measured(name) else {
+            let what = format!(
+                "the medium \"{name}\" is not known: \"sigma_a\" and \"sigma_s\" hold, or 1 where they are not stated"
+            );
+            self.builder.leave_out(place, what);
+            return None;
+        };
+        list.get("sigma_a");
+        list.get("sigma_s");
+        Some(json!({
+            "absorption_per_m": coefficient(absorption.map(|v| v * scale)),
+            "scattering_per_m": coefficient(scattering.map(|v| v * scale)),
+        }))
     }
 
     /// Which media shapes from here on stand between.
     pub(super) fn medium_interface(&mut self, inside: &str, outside: &str, place: &str) {
-        let known = |name: &str, media: &std::collections::HashMap<String, Rc<Value>>| media.get(name).cloned();
         for name in [inside, outside] {
             if !name.is_empty() && !self.media.contains_key(name) {
                 self.builder.leave_out(place, format!("there is no medium \"{name}\""));
             }
         }
-        self.state.inside = known(inside, &self.media);
-        self.state.outside = known(outside, &self.media);
+        let known = |name: &str| self.media.get(name).cloned().flatten();
+        (self.state.inside, self.state.outside) = (known(inside), known(outside));
     }
 
     /// Fills the space outside of all bodies with what stands outside of the camera or of a shape.
@@ -89,9 +98,9 @@ impl Reading<'_, '_> {
         }
     }
 
-    fn coefficient(&mut self, list: &Parameters, name: &str, default: [f64; 3], scale: f64) -> Result<Value, String> {
+    fn coefficient(&mut self, list: &Parameters, name: &str, scale: f64) -> Result<Value, String> {
         let colour = |rgb: [f64; 3]| json!({ "type": "rgb", "rgb": rgb, "scale": scale });
-        let Some(parameter) = list.get(name) else { return Ok(colour(default)) };
+        let Some(parameter) = list.get(name) else { return Ok(json!(scale)) };
         match (parameter.kind.as_str(), parameter.numbers()) {
             ("rgb" | "color", [r, g, b]) => Ok(colour([*r, *g, *b])),
             ("float", [value]) => Ok(json!(value * scale)),

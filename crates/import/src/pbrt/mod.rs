@@ -3,8 +3,10 @@
 //! What a directive says and no part of this module has asked for is listed with its line.
 
 mod camera;
+mod grid;
 mod light;
 mod material;
+mod measured;
 mod medium;
 mod parameters;
 mod relief;
@@ -108,7 +110,8 @@ struct Reading<'r, 'b> {
     systems: HashMap<String, DAffine3>,
     materials: HashMap<String, Rc<Look>>,
     textures: HashMap<String, Value>,
-    media: HashMap<String, Rc<Value>>,
+    /// Media by their names: nothing for one that cannot be read.
+    media: HashMap<String, Option<Rc<Value>>>,
     /// Mesh files that have been read: what is placed of each, the box around it, and whether it has texture coordinates.
     meshes: HashMap<String, shape::Placeable>,
     /// The object that is being defined, and what is outside of it.
