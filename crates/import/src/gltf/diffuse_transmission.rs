@@ -6,6 +6,12 @@ use crate::{Builder, reflectance};
 
 const KEY: &str = "KHR_materials_diffuse_transmission";
 
+/// Whether a material that is not metal passes light.
+pub(super) fn passes(material: &gltf::Material<'_>) -> bool {
+    let factor = material.extension_value(KEY).and_then(|value| value["diffuseTransmissionFactor"].as_f64());
+    factor.is_some_and(|factor| factor > 0.0)
+}
+
 /// The ground of a material, of which a share passes light to the other side.
 pub(super) fn over(ground: Value, material: &gltf::Material<'_>, place: &str, builder: &mut Builder<'_>) -> Value {
     let Some(value) = material.extension_value(KEY) else { return ground };

@@ -12,10 +12,9 @@ use super::image::TextureTransform;
 use super::iridescence::Iridescence;
 use super::number::{Number, data_image};
 use super::sheen::{self, Fit};
-use crate::{Builder, light, reflectance};
+use super::volume;
+use crate::{Builder, light};
 
-/// The least share of light that a medium of an imported model lets through.
-const LEAST_TRANSMITTANCE: f64 = 1e-4;
 /// Wavelengths of the hydrogen lines F and C and the helium line d, µm, at which dispersion is stated.
 const LINES_UM: [f64; 3] = [0.4861327, 0.6562725, 0.5875618];
 
@@ -104,15 +103,7 @@ impl<'d> Materials<'d> {
             if !roughness.put_as_roughness(anisotropy.as_ref(), &mut glass) && !tinted {
                 uv_set = None;
             }
-            if let Some(volume) = material.volume()
-                && volume.attenuation_distance().is_finite()
-                && volume.attenuation_distance() > 0.0
-            {
-                // A channel of 0 would need an endless coefficient.
-                let colour = volume.attenuation_color().map(|v| decimal(v).clamp(LEAST_TRANSMITTANCE, 1.0));
-                glass["transmittance"] = reflectance(colour);
-                glass["transmittance_depth_m"] = json!(decimal(volume.attenuation_distance()));
-            }
+            volume::put_in_glass(&mut glass, material, place, builder);
             if let Some(iridescence) = Iridescence::of(material, place, builder) {
                 iridescence.put_on_glass(&mut glass, place, builder);
             }
@@ -154,12 +145,18 @@ impl<'d> Materials<'d> {
             let at = format!("{place}.extensions.KHR_materials_iridescence");
             builder.leave_out(at, "what is not metal and transmits no light has no film");
         }
+        let is_metal = matches!(metallic, Number::Value(1.0));
         let value = match metallic {
             Number::Value(0.0) => ground,
             Number::Value(1.0) => metal(),
             share => share.mixed(ground, metal()),
         };
-        let value = self.with_sheen(value, material, &mut uv_set, (place, buffers, clear.is_some()), builder);
+        let mut value = self.with_sheen(value, material, &mut uv_set, (place, buffers, clear.is_some()), builder);
+        if is_metal || !diffuse_transmission::passes(material) {
+            volume::leave_out(material, place, builder);
+        } else {
+            volume::fill_body(&mut value, material, place, builder);
+        }
         (value, uv_set)
     }
 
@@ -308,15 +305,14 @@ fn list_unhonoured(material: &gltf::Material<'_>, place: &str, builder: &mut Bui
     let opaque = material.transmission().is_none_or(|transmission| transmission.transmission_factor() < 0.5);
     let weak = material.transmission().is_some_and(|transmission| transmission.transmission_factor() > 0.0);
     list(weak && opaque, "extensions.KHR_materials_transmission", "a factor below 0.5 becomes opaque");
-    let coloured = material.volume().is_some_and(|volume| volume.attenuation_distance().is_finite());
-    list(coloured && opaque, "extensions.KHR_materials_volume", "it is ignored: the material does not transmit light");
-    const KNOWN: [&str; 6] = [
+    const KNOWN: [&str; 7] = [
         "KHR_materials_anisotropy",
         "KHR_materials_clearcoat",
         "KHR_materials_diffuse_transmission",
         "KHR_materials_dispersion",
         "KHR_materials_iridescence",
         "KHR_materials_sheen",
+        "KHR_materials_volume_scatter",
     ];
     for key in material.extensions().into_iter().flat_map(|map| map.keys()) {
         list(!KNOWN.contains(&key.as_str()), &format!("extensions.{key}"), no);

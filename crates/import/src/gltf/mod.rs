@@ -20,6 +20,7 @@ mod part;
 mod sheen;
 mod skin;
 mod variants;
+mod volume;
 
 use std::collections::{HashMap, HashSet};
 

@@ -10,6 +10,7 @@ mod sheens;
 mod skins;
 mod studio;
 mod variants;
+mod volumes;
 
 use etalon_import::{Imported, import_bytes};
 use etalon_scene::{
