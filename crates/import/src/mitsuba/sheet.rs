@@ -25,7 +25,8 @@ impl Walk<'_, '_, '_> {
                     self.builder.leave_out(place, "the transmittance of a retarder is ignored");
                 }
                 let delay = self.degrees(element, "delta", 90.0)?;
-                let what = "a retarder delays as much at every angle, where Mitsuba takes the cosine as a factor";
+                let what = "a retarder delays as much at every angle, where Mitsuba takes the cosine as a factor: it delays 3.5 % more at 15° \
+                            from the normal, 15 % more at 30°, twice as much at 60°";
                 self.builder.approximate(place, what);
                 Ok(Look::of(json!({ "type": "retarder", "axis": axis, "retardance_deg": delay })))
             }

@@ -144,7 +144,9 @@ fn a_map_that_cannot_be_honoured_is_listed_with_its_line() {
         (
             "xml",
             bumpy(&bitmap).replace("value=\"false\"", "value=\"true\""),
-            "line 3: grazing light on bent surfaces is not dimmed (use_shadowing_function)",
+            "line 3: grazing light on bent surfaces is not dimmed (use_shadowing_function): normals that are bent by 20° are 1.2 % brighter in light at \
+             60° from the normal, 12 % at 80°. What they send through the surface is mirrored back here, and lost there: 0.5 % of the light of a \
+             sky in a comparison",
             true,
         ),
         (

@@ -82,7 +82,7 @@ fn what_sheets_say_arrives() {
         panic!("a retarder")
     };
     assert_eq!((retardance_rad, at_nm), (std::f64::consts::PI, None));
-    assert!(said(&imported).iter().all(|line| line.contains("every angle")), "{:?}", said(&imported));
+    assert!(said(&imported).iter().all(|line| line.contains("twice as much at 60°")), "{:?}", said(&imported));
 }
 
 #[test]

@@ -24,7 +24,9 @@ fn factors_of_glass_and_metals_are_tints() {
         "<float name=\"specular_reflectance\" value=\"0.5\"/><float name=\"specular_transmittance\" value=\"0.25\"/>";
     for plugin in ["dielectric", "roughdielectric", "thindielectric"] {
         let (kind, said) = material(&format!("<bsdf type=\"{plugin}\">{both}</bsdf>"));
-        assert_eq!((tints(&kind), said), ([0.5, 0.25], vec![]), "{plugin}");
+        assert_eq!(tints(&kind), [0.5, 0.25], "{plugin}");
+        let listed = said.iter().filter(|line| line.contains("differs by up to 1.3 %")).count();
+        assert_eq!((listed, said.len()), if plugin == "thindielectric" { (1, 1) } else { (0, 0) }, "{said:?}");
     }
     let one = "<float name=\"specular_reflectance\" value=\"0.5\"/>";
     for keys in
