@@ -12,6 +12,7 @@ mod explain;
 mod expose;
 mod farm;
 mod hostile;
+mod import;
 mod instruction_sets;
 mod measure;
 mod outputs;
