@@ -84,7 +84,7 @@ fn an_export_holds_every_truth_and_our_own_renders_of_it_pass_as_pictures() {
     let folder = tempfile::tempdir().unwrap();
     let (truths, pictures) = (folder.path().join("truths"), folder.path().join("pictures"));
     exported(&truths);
-    assert_eq!(entries(&truths), ["README.md", "neutral.schema.json", "scenes", "truths.json"]);
+    assert_eq!(entries(&truths), ["README.md", "judge.py", "neutral.schema.json", "scenes", "truths.json"]);
     let list: Value = serde_json::from_str(&std::fs::read_to_string(truths.join("truths.json")).unwrap()).unwrap();
     assert!(list["truths"].as_array().unwrap().len() >= 136);
 
@@ -164,9 +164,9 @@ fn pictures_that_cannot_be_used_exit_2_with_the_reason() {
     etalon_line("verify --images {} --thorough", [folder.path()]).expect(2).says(["--thorough"]);
     etalon(["verify", "no-such-truth"]).expect(2).says(["no-such-truth"]);
     etalon_line("verify media --export {}", [&at("media")]).expect(0);
-    let listed: serde_json::Value = serde_json::from_slice(&std::fs::read(at("media/truths.json")).unwrap()).unwrap();
+    let listed: Value = serde_json::from_slice(&std::fs::read(at("media/truths.json")).unwrap()).unwrap();
     let listed = listed["truths"].as_array().unwrap();
-    let in_media = |claim: &serde_json::Value| claim == "scattering" || claim == "absorption";
+    let in_media = |claim: &Value| claim == "scattering" || claim == "absorption";
     let all = listed.iter().all(|truth| truth["claims"].as_array().unwrap().iter().any(in_media));
     assert!(all && listed.len() > 80, "{}", listed.len());
     for (channels, size, why) in [

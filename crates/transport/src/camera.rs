@@ -340,11 +340,19 @@ mod tests {
     #[test]
     fn a_mirrored_camera_exchanges_left_and_right_of_film_and_lens() {
         let lens = Some(ThinLens { radius_m: 0.1, focus_distance_m: 2.0 });
-        for projection in [Projection::Perspective { vertical_fov_rad: 0.8, lens }, Projection::Orthographic { height_m: 2.0 }] {
+        for projection in
+            [Projection::Perspective { vertical_fov_rad: 0.8, lens }, Projection::Orthographic { height_m: 2.0 }]
+        {
             let straight = camera(projection);
-            let of = |mirrored| Camera::new(&scene::Camera { mirrored, ..straight.clone() }, 300, 200, false).ray([0.7, 0.3], [0.2, 0.6]);
+            let of = |mirrored| {
+                Camera::new(&scene::Camera { mirrored, ..straight.clone() }, 300, 200, false)
+                    .ray([0.7, 0.3], [0.2, 0.6])
+            };
             let (straight, mirrored) = (of(false), of(true));
-            assert_eq!(mirrored.origin - Vec3::new(1.0, 0.0, 0.0), reflect_x(straight.origin - Vec3::new(1.0, 0.0, 0.0)));
+            assert_eq!(
+                mirrored.origin - Vec3::new(1.0, 0.0, 0.0),
+                reflect_x(straight.origin - Vec3::new(1.0, 0.0, 0.0))
+            );
             assert_eq!(mirrored.direction, reflect_x(straight.direction));
         }
     }

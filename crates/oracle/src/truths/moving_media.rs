@@ -29,7 +29,7 @@ fn view() -> Scene {
 
 /// Half of the depth that a slab needs, drawn out to twice its size by its placement.
 fn stretched_slab() -> Vec<Truth> {
-    let [half, one, two] = [0.5, 1.0, 2.0].map(|depth| fluxes(depth));
+    let [half, one, two] = [0.5, 1.0, 2.0].map(fluxes);
     let place = json!([{ "scale": [1, 1, 2] }, { "translate_m": [0.3, 0, 0.5] }]);
     let placed = |scene: Scene| {
         let filled = medium(0.5, 0.0, &isotropic());

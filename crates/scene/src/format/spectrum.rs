@@ -297,7 +297,7 @@ crate::variants! {
         "image" => Image(ImageSpectrum),
         "checker" => Checker(CheckerSpectrum),
         "gradient" => Gradient(GradientSpectrum),
-        "noise" => Noise(NoiseSpectrum),
+        "noise" => Noise(Box<NoiseSpectrum>),
         "vertex-colours" => VertexColours(VertexColoursSpectrum),
     }
 }

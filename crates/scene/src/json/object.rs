@@ -35,6 +35,24 @@ pub trait Record: Sized {
     fn fields(schema: &mut SchemaBuilder) -> Vec<FieldSchema>;
 }
 
+impl<T: Record> Record for Box<T> {
+    const KEYS: &'static [&'static str] = T::KEYS;
+    const COMMENTED: bool = T::COMMENTED;
+    const RULES: &'static [Rule] = T::RULES;
+
+    fn read(object: &mut ObjectReader<'_>, reader: &mut Reader<'_>) -> Self {
+        Self::new(T::read(object, reader))
+    }
+
+    fn description() -> String {
+        T::description()
+    }
+
+    fn fields(schema: &mut SchemaBuilder) -> Vec<FieldSchema> {
+        T::fields(schema)
+    }
+}
+
 /// An object whose members are being taken out by key.
 ///
 /// Repeated keys and unknown keys are reported when it is made. An unknown key that is a misspelling of an absent one, or
