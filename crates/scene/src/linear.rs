@@ -70,7 +70,7 @@ pub(crate) fn norm(matrix: &DMat3) -> f64 {
 }
 
 /// The transposed inverse times the determinant.
-pub(crate) fn cofactors(&DMat3 { x_axis, y_axis, z_axis }: &DMat3) -> DMat3 {
+pub fn cofactors(&DMat3 { x_axis, y_axis, z_axis }: &DMat3) -> DMat3 {
     DMat3::from_cols(y_axis.cross(z_axis), z_axis.cross(x_axis), x_axis.cross(y_axis))
 }
 

@@ -3,7 +3,8 @@
 use std::collections::HashMap;
 use std::rc::Rc;
 
-use glam::{DAffine3, DMat3, DVec3};
+use etalon_scene::linear::cofactors;
+use glam::{DAffine3, DVec3};
 use gltf::mesh::Semantic;
 use gltf::{Gltf, Primitive, Skin};
 
@@ -199,9 +200,4 @@ impl Walk<'_, '_> {
         }
         Ok(sets)
     }
-}
-
-/// The inverse transpose of a matrix times its determinant.
-fn cofactors(m: &DMat3) -> DMat3 {
-    DMat3::from_cols(m.y_axis.cross(m.z_axis), m.z_axis.cross(m.x_axis), m.x_axis.cross(m.y_axis))
 }
