@@ -82,8 +82,13 @@ pub struct ImageTexture {
 impl ImageTexture {
     /// An image as it is, once a unit of the texture coordinates, repeated, bilinear between texels.
     pub fn new(image: Image) -> Self {
+        Self::of(Arc::new(image))
+    }
+
+    /// The same of an image that others may share.
+    pub fn of(image: Arc<Image>) -> Self {
         Self {
-            image: Arc::new(image),
+            image,
             name: String::new(),
             wrap: [Wrap::Repeat; 2],
             filter: TextureFilter::Bilinear,

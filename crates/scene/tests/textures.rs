@@ -344,3 +344,31 @@ fn what_is_wrong_with_an_image_of_numbers_is_said() {
         assert_eq!(errors.problems[0].code, code, "{errors}");
     }
 }
+
+/// Each of these takes a few bytes of the file and 50 MB of memory.
+#[test]
+fn noise_is_shared_by_those_who_use_the_same_and_bounded_for_all() {
+    let materials = |count: u64, seed: fn(u64) -> u64| {
+        let noise = |k: u64| {
+            format!(
+                r#""{k}": {{"type": "lambert", "reflectance": {{"type": "noise", "first": 0, "second": 1, "cells": [2048, 2048], "seed": {}}}}}"#,
+                seed(k)
+            )
+        };
+        let list: Vec<String> = (0..count).map(noise).collect();
+        let text = format!(
+            r#"{{"etalon": 1, "camera": {{"type": "perspective", "position_m": [0, 0, 1], "look_at_m": [0, 0, 0], "vertical_fov_deg": 40}},
+                "film": {{"width": 4, "height": 4}}, "materials": {{{}}}, "lights": [{{"type": "environment", "radiance": 1}}]}}"#,
+            list.join(", ")
+        );
+        etalon_scene::parse(&text, "test")
+    };
+    let (scene, _) = materials(40, |_| 7).unwrap();
+    let images = scene.materials.iter().map(|material| {
+        let MaterialKind::Lambert { reflectance } = &material.kind else { panic!("diffuse") };
+        std::ptr::from_ref(reflectance.image().expect("noise").image.as_ref())
+    });
+    assert_eq!(images.collect::<std::collections::HashSet<_>>().len(), 1);
+    let errors = materials(5, |k| k).unwrap_err();
+    assert!(errors.problems[0].message.contains("16777216 points"), "{errors}");
+}

@@ -4,6 +4,7 @@ mod image;
 mod noise;
 
 use std::collections::{HashMap, HashSet};
+use std::sync::Arc;
 
 use etalon_optics::colour::{
     LUMINOUS_EFFICACY, cie_y_integral_nm, daylight_chromaticity, daylight_luminances, daylight_weights, luminance_of,
@@ -11,12 +12,14 @@ use etalon_optics::colour::{
 use etalon_optics::spectrum::Outside;
 use etalon_optics::{Illuminant, OpticsError, Spectrum};
 
+use self::noise::NoiseKey;
 use super::names::Names;
 use super::spectrum::{
     DaylightSpectrum, Density, OutsideTable, RgbSpectrum, SpectrumForm, SpectrumObject, TabulatedSpectrum, check_table,
     of_bytes, sound,
 };
 use crate::json::{Code, List, Named, NamedEntry, Place, Reader, Span, Spanned};
+use crate::texture::Image;
 
 /// The largest emission: with the squares of distances, it stays within the single precision of pictures (3·10³⁸).
 pub(crate) const BRIGHTEST: f64 = 1e30;
@@ -53,6 +56,10 @@ pub(crate) struct Spectra<'f> {
     said: HashSet<(Span, Code)>,
     /// Named spectra that have been made: upsampling a colour takes milliseconds.
     made: HashMap<(usize, Role), Option<Spectrum>>,
+    /// Images of noise: many materials may use the same.
+    noise: HashMap<NoiseKey, Arc<Image>>,
+    /// Points of their lattices, those that were too many included.
+    noise_points: u64,
 }
 
 impl<'f> Spectra<'f> {
@@ -70,7 +77,16 @@ impl<'f> Spectra<'f> {
             }
         }
         let targets = targets(entries, &names, reader);
-        Self { entries, names, targets, range_nm, said: HashSet::new(), made: HashMap::new() }
+        Self {
+            entries,
+            names,
+            targets,
+            range_nm,
+            said: HashSet::new(),
+            made: HashMap::new(),
+            noise: HashMap::new(),
+            noise_points: 0,
+        }
     }
 
     /// The spectrum of a form in a role.

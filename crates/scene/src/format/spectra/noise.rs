@@ -1,10 +1,18 @@
 //! Value noise as an image.
 
+use std::sync::Arc;
+
 use super::{Spectra, Use};
 use crate::format::spectrum::{MOST_CELLS, NoiseSpectrum};
 use crate::format::uv::uv_map;
 use crate::json::{Code, Reader};
 use crate::texture::{Image, ImageTexture, Texels};
+
+/// Most points of all noise of a scene: 200 MB of texels.
+const MOST_POINTS: u64 = 1 << 24;
+
+/// What an image of noise depends on: the bits of both colours, the cells of the first octave, the number of octaves, the seed.
+pub(super) type NoiseKey = ([[u32; 3]; 2], [u64; 2], u64, u64);
 
 impl Spectra<'_> {
     /// The sum of the lattices changes evenly along u and v within each cell of the finest. So an image with a texel for each point of that lattice
@@ -14,7 +22,7 @@ impl Spectra<'_> {
         let (cells, octaves, seed) = (form.cells?, form.octaves?.0, form.seed?.0);
         let mut uv_map = uv_map(form.uv_scale, &form.uv_matrix, form.uv_offset, form.at, reader)?;
         let [first, second] = [first, second].map(|colour| self.texel(colour?, form.at, used, reader));
-        let (first, second) = (first?, second?);
+        let colours = [first?, second?];
         let side = cells.map(|cells| cells.value.0 << (octaves - 1));
         for k in [0, 1] {
             if side[k] > MOST_CELLS {
@@ -26,19 +34,30 @@ impl Spectra<'_> {
             // Lattice points lie where texels have their centres.
             uv_map.offset[k] += 0.5 / side[k] as f64;
         }
-        let mix = |t: f64| {
-            std::array::from_fn(|c| (f64::from(first[c]) + t * (f64::from(second[c]) - f64::from(first[c]))) as f32)
-        };
-        let [width, height] = side;
-        // Rows count from the top.
-        let points = (0..height).rev().flat_map(|j| (0..width).map(move |i| [i, j]));
-        let texels = points.map(|point| mix(noise(point, cells.map(|cells| cells.value.0), octaves, seed))).collect();
-        Some(ImageTexture {
-            name: "noise".to_owned(),
-            uv_map,
-            ..ImageTexture::new(Image::new(width as u32, height as u32, Texels::F32(texels)))
-        })
+        let key = (colours.map(|colour| colour.map(f32::to_bits)), cells.map(|cells| cells.value.0), octaves, seed);
+        if !self.noise.contains_key(&key) {
+            self.noise_points += side[0] * side[1];
+            if self.noise_points > MOST_POINTS {
+                let message = format!("all noise of the scene has more than {MOST_POINTS} points");
+                reader.error(Code::OutOfRange, form.at.head(), message);
+                return None;
+            }
+        }
+        let image = self.noise.entry(key).or_insert_with(|| Arc::new(image(colours, key.1, octaves, seed))).clone();
+        Some(ImageTexture { name: "noise".to_owned(), uv_map, ..ImageTexture::of(image) })
     }
+}
+
+/// A texel for each point of the finest lattice.
+fn image([first, second]: [[f32; 3]; 2], cells: [u64; 2], octaves: u64, seed: u64) -> Image {
+    let [width, height] = cells.map(|cells| cells << (octaves - 1));
+    let mix = |t: f64| {
+        std::array::from_fn(|c| (f64::from(first[c]) + t * (f64::from(second[c]) - f64::from(first[c]))) as f32)
+    };
+    // Rows count from the top.
+    let points = (0..height).rev().flat_map(|j| (0..width).map(move |i| [i, j]));
+    let texels = points.map(|point| mix(noise(point, cells, octaves, seed))).collect();
+    Image::new(width as u32, height as u32, Texels::F32(texels))
 }
 
 /// Noise from 0 to 1 at a point of the finest lattice: Σ 2⁻ᵒ vₒ / Σ 2⁻ᵒ over the octaves o, where vₒ is the bilinear mean of the numbers around the point.
