@@ -89,6 +89,7 @@ impl Slab {
 
 #[cfg(test)]
 mod tests {
+    use super::super::known_slabs::{OF_BEAM, OF_DIFFUSE_LIGHT};
     use super::super::{HalfSpace, by_scattering_orders, henyey_greenstein, legendre_moments};
     use super::*;
 
@@ -102,20 +103,12 @@ mod tests {
 
     #[test]
     fn isotropic_slabs_have_their_known_fluxes() {
-        let diffuse = [
-            (0.1, 0.915_703),
-            (0.5, 0.704_169),
-            (1.0, 0.553_406),
-            (2.0, 0.390_060),
-            (5.0, 0.207_657),
-            (10.0, 0.116_745),
-        ];
-        for (depth, transmitted) in diffuse {
+        for (depth, transmitted) in OF_DIFFUSE_LIGHT {
             let found = slab(depth, 1.0, 0.0).of_diffuse_light();
             near(found.transmitted, transmitted, &format!("diffuse, {depth}"));
             near(found.reflected + found.transmitted, 1.0, "nothing is absorbed");
         }
-        for (depth, transmitted) in [(1.0, 0.658_671), (2.0, 0.482_485), (5.0, 0.261_279), (10.0, 0.146_995)] {
+        for (depth, transmitted) in OF_BEAM {
             let found = slab(depth, 1.0, 0.0).of_beam();
             near(found.transmitted, transmitted, &format!("beam, {depth}"));
             near(found.reflected + found.transmitted, 1.0, "nothing is absorbed");

@@ -30,3 +30,14 @@ pub use orders::by_scattering_orders;
 pub use phase::{henyey_greenstein, legendre_moments};
 pub use single::{ball_transmittance, glow_of_point_lamp, scattered_once};
 pub use source_function::IsotropicSlab;
+
+/// What is known of slabs that scatter alike in all directions and absorb nothing: their optical depth, and the share that they transmit.
+#[cfg(test)]
+mod known_slabs {
+    /// Of light that comes alike from all directions.
+    pub(super) const OF_DIFFUSE_LIGHT: [(f64, f64); 6] =
+        [(0.1, 0.915_703), (0.5, 0.704_169), (1.0, 0.553_406), (2.0, 0.390_060), (5.0, 0.207_657), (10.0, 0.116_745)];
+    /// Of a beam along the normal.
+    pub(super) const OF_BEAM: [(f64, f64); 4] =
+        [(1.0, 0.658_671), (2.0, 0.482_485), (5.0, 0.261_279), (10.0, 0.146_995)];
+}

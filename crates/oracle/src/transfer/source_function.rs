@@ -153,6 +153,7 @@ impl Grid {
 
 #[cfg(test)]
 mod tests {
+    use super::super::known_slabs::{OF_BEAM, OF_DIFFUSE_LIGHT};
     use super::super::{HalfSpace, Slab};
     use super::*;
     use crate::quadrature::interval;
@@ -172,19 +173,12 @@ mod tests {
 
     #[test]
     fn slabs_have_their_known_fluxes() {
-        for (depth, diffuse) in [
-            (0.1, 0.915_703),
-            (0.5, 0.704_169),
-            (1.0, 0.553_406),
-            (2.0, 0.390_060),
-            (5.0, 0.207_657),
-            (10.0, 0.116_745),
-        ] {
+        for (depth, diffuse) in OF_DIFFUSE_LIGHT {
             let found = IsotropicSlab::new(depth, 1.0).of_diffuse_light();
             assert!((found.transmitted - diffuse).abs() < 5e-6, "diffuse, {depth}: {}", found.transmitted);
             assert!((found.transmitted + found.reflected - 1.0).abs() < 1e-9, "{depth}: something is lost");
         }
-        for (depth, beam) in [(1.0, 0.658_671), (2.0, 0.482_485), (5.0, 0.261_279), (10.0, 0.146_995)] {
+        for (depth, beam) in OF_BEAM {
             let found = IsotropicSlab::new(depth, 1.0).of_beam(1.0).transmitted;
             assert!((found - beam).abs() < 5e-6, "beam, {depth}: {found}");
         }

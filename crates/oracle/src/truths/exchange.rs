@@ -20,8 +20,8 @@ pub struct ExchangeFile {
     pub bytes: Vec<u8>,
 }
 
-/// The folder with which a renderer joins: a README, the JSON Schema of the neutral form, the list of truths, a judge that needs nothing but Python,
-/// and a scene for each truth, with the files that it names.
+/// The folder with which a renderer joins: a README, the JSON Schema of the neutral form, the list of truths, and a scene for each truth, with
+/// the files that it names. A judge that needs nothing but Python lies beside them.
 ///
 /// # Panics
 /// If two scenes name different files alike.
