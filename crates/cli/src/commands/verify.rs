@@ -4,6 +4,7 @@ mod export;
 mod ours;
 mod pictures;
 mod report;
+mod resolution;
 mod series;
 mod suite;
 

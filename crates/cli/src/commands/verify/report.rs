@@ -5,10 +5,11 @@ use std::time::Instant;
 use etalon_oracle::Verdict;
 use etalon_oracle::statistics::{Estimate, POWER, SUITE_SIGNIFICANCE};
 use etalon_oracle::subjects::Reading;
-use etalon_oracle::truths::{Truth, judge};
+use etalon_oracle::truths::{Mistake, Truth, judge};
 use miette::miette;
 use serde::Serialize;
 
+use super::resolution::Resolution;
 use crate::failure::{Failure, Outcome};
 use crate::print;
 
@@ -36,6 +37,14 @@ pub(super) struct Row {
     /// The largest bias that they may have caused, in the units of the truth; `null` where nothing bounds it.
     #[serde(skip_serializing_if = "Option::is_none")]
     cut_bias: Option<f64>,
+    /// What the scene needs beyond the basics.
+    #[serde(skip)]
+    abilities: Vec<&'static str>,
+    #[serde(skip)]
+    mistakes: usize,
+    /// Known mistakes that could have passed.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    unseen: Vec<&'static str>,
 }
 
 /// The numbers of a row.
@@ -62,6 +71,26 @@ impl Row {
         Figures { truth, measured, standard_error, resolvable_bias, pass }
     }
 
+    /// The truth's.
+    pub(super) fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// What the scene needs beyond the basics.
+    pub(super) fn abilities(&self) -> &[&'static str] {
+        &self.abilities
+    }
+
+    /// How many mistakes the truth knows of.
+    pub(super) fn mistakes(&self) -> usize {
+        self.mistakes
+    }
+
+    /// Those that could have passed.
+    pub(super) fn unseen_mistakes(&self) -> impl Iterator<Item = &'static str> {
+        self.unseen.iter().copied()
+    }
+
     /// Whether the truth holds.
     pub(super) fn passes(&self) -> bool {
         self.pass
@@ -79,6 +108,9 @@ impl Row {
             Ok(reading) => (reading.estimate, judge(truth, &reading, significance)),
             Err(why) => (Estimate::new(f64::NAN, f64::NAN), Verdict::broken(&truth.name, why)),
         };
+        // What is not a number excludes nothing.
+        let sees = |mistake: &Mistake| (mistake.value - truth.value()).abs() >= verdict.resolvable_bias;
+        let could_pass = |mistake: &&Mistake| !sees(mistake);
         Self {
             name: truth.name.clone(),
             formula: truth.formula.clone(),
@@ -93,6 +125,9 @@ impl Row {
             paths: None,
             cut_paths: None,
             cut_bias: None,
+            abilities: truth.claims.iter().map(|claim| claim.name()).collect(),
+            mistakes: truth.mistakes().len(),
+            unseen: truth.mistakes().iter().filter(could_pass).map(|mistake| mistake.what).collect(),
         }
     }
 
@@ -104,23 +139,6 @@ impl Row {
     pub(super) fn took(self, seconds: f64, paths: Option<u64>) -> Self {
         Self { seconds: Some(seconds), paths, ..self }
     }
-}
-
-/// How finely all truths together were seen.
-#[derive(Serialize)]
-pub(super) struct Resolution {
-    /// Truths whose value is not 0, so that a bias has a relative size.
-    truths: usize,
-    /// How many of them would have shown a relative bias of 5, 1, 0.2 and 0.02 %.
-    saw_5_percent: usize,
-    saw_1_percent: usize,
-    saw_0_2_percent: usize,
-    saw_0_02_percent: usize,
-    /// The relative bias that half of them would have shown, and that all would.
-    median: f64,
-    worst: f64,
-    /// The names of those that see the least, the worst first.
-    least_fine: Vec<String>,
 }
 
 /// Everything that was judged together.
@@ -248,24 +266,6 @@ impl Report {
         *if first.pass { &mut self.passed } else { &mut self.failed } -= 1;
     }
 
-    /// What all truths together would have seen.
-    fn resolve(&self) -> Option<Resolution> {
-        let mut seen: Vec<(&str, f64)> =
-            self.truths.iter().filter_map(|row| Some((row.name.as_str(), row.relative_resolution()?))).collect();
-        seen.sort_by(|a, b| b.1.total_cmp(&a.1));
-        let below = |bias: f64| seen.iter().filter(|(_, sees)| *sees <= bias).count();
-        Some(Resolution {
-            truths: seen.len(),
-            saw_5_percent: below(0.05),
-            saw_1_percent: below(0.01),
-            saw_0_2_percent: below(2e-3),
-            saw_0_02_percent: below(2e-4),
-            median: seen.get(seen.len() / 2)?.1,
-            worst: seen.first()?.1,
-            least_fine: seen.iter().take(5).map(|(name, _)| (*name).to_owned()).collect(),
-        })
-    }
-
     pub(super) fn push_missing(&mut self, truth: &Truth) {
         if self.table {
             print::line(&format!("{:<44} {:>14.10} {:>14}", truth.name, truth.value(), "no picture"));
@@ -297,7 +297,7 @@ impl Report {
     /// Prints what is left to say; a failure if any truth does not hold.
     pub(super) fn finish(mut self) -> Outcome {
         self.seconds = self.start.elapsed().as_secs_f64();
-        self.resolution = self.resolve();
+        self.resolution = Resolution::of(&self.truths);
         if self.table {
             let missing = match &self.missing {
                 Some(missing) if !missing.is_empty() => format!(", {} without a picture", missing.len()),
@@ -311,20 +311,7 @@ impl Report {
                 "{} passed, {} failed{missing}{unjudged}, in {:.1} s; a correct renderer fails one of them with probability {:.0e}",
                 self.passed, self.failed, self.seconds, SUITE_SIGNIFICANCE
             ));
-            if let Some(seen) = &self.resolution {
-                print::line(&format!(
-                    "a bias of 5 % would have been seen in {} of {} truths, of 1 % in {}, of 0.2 % in {}, of 0.02 % in {}; half see {:.2} %, the \
-                     worst {:.2} %",
-                    seen.saw_5_percent,
-                    seen.truths,
-                    seen.saw_1_percent,
-                    seen.saw_0_2_percent,
-                    seen.saw_0_02_percent,
-                    100.0 * seen.median,
-                    100.0 * seen.worst
-                ));
-                print::line(&format!("least fine: {}", seen.least_fine.join(", ")));
-            }
+            self.resolution.iter().flat_map(Resolution::lines).for_each(|line| print::line(&line));
             if let Some(slowest) = self.slowest() {
                 print::line(&format!("slowest: {slowest}"));
             }
