@@ -5,7 +5,7 @@ use std::time::Instant;
 use etalon_oracle::statistics::{Budget, Welford};
 use etalon_oracle::subjects::Reading;
 use etalon_oracle::truths::{Claim, Quantity, SceneFile, Truth, judge};
-use etalon_scene::{NamedFile, Scene};
+use etalon_scene::{Filter, NamedFile, PathReuse, Scene};
 use etalon_transport::{Counters, Study};
 use miette::Report as Problem;
 
@@ -19,12 +19,16 @@ use crate::interrupt::Interrupt;
 /// with each other. With 64 of them Student's t at the suite's significance is close to the normal distribution.
 const REPLICATES: u32 = 64;
 /// At first, all replicates together take this part of the samples that the truth's scene suggests: those are meant for independent
-/// numbers.
-const FIRST: u32 = 4;
-/// A reading that is too noisy to count takes this many times the paths. It does so again, as long as it has fewer paths than the first step times
-/// [`MOST_TO_COUNT`].
+/// numbers, and for one render.
+const FIRST: u32 = 32;
+/// Films of a run that is not thorough keep at least this many pixels a side.
+const LEAST_SIDE_PX: u32 = 8;
+/// A reading that is too noisy to count takes at most this many times the paths. It does so again, as long as it has fewer paths than the first step
+/// times [`MOST_TO_COUNT`].
 const MORE_TO_COUNT: u32 = 2;
-const MOST_TO_COUNT: u32 = 1 << 8;
+const MOST_TO_COUNT: u32 = 1 << 11;
+/// Paths that are taken beyond those that would just do at 1/√n: what a reading has seen is known from its noise, to about a tenth.
+const SPARE: f64 = 1.15;
 /// A reading that counts takes this many times the paths to see more, or fewer where these will do.
 const MORE: u32 = 4;
 /// What a thorough run wants to see of each truth, relative, and of those whose whole name was given. How many rays it spends on that for
@@ -37,13 +41,15 @@ const THOROUGH_REACH_RAYS: u64 = 4_096_000_000;
 const RAYS_OF_ALL: u64 = 400_000_000;
 
 /// A truth's picture by our integrator, taken with many seeds.
-struct Measurement<'a> {
+pub(super) struct Measurement<'a> {
     truth: &'a Truth,
     of_truth: Series,
     /// A film of CIE Y reads a narrow band relative to a white sky in the same band.
     of_white: Option<Series>,
     /// Samples that a pixel of each replicate has after the first step.
     first_spp: u32,
+    /// How many times these it has now.
+    effort: u32,
 }
 
 impl<'a> Measurement<'a> {
@@ -57,7 +63,18 @@ impl<'a> Measurement<'a> {
         let series = |json: &str| Series::new(&scene(json)?, &study, seeds.clone(), threads);
         let first_spp = scene(&truth.scene)?.integrator.spp.div_ceil(FIRST * REPLICATES).next_power_of_two();
         let of_white = truth.band_nm.map(|_| series(&truth.white_scene())).transpose()?;
-        Ok(Self { truth, of_truth: series(&truth.scene)?, of_white, first_spp })
+        Ok(Self { truth, of_truth: series(&truth.scene)?, of_white, first_spp, effort: 0 })
+    }
+
+    /// The same films, read for another truth; `None` if its scene is another.
+    fn read_for(self, truth: &'a Truth) -> Option<Self> {
+        let polarised = |truth: &Truth| truth.claims.contains(&Claim::CarriesPolarisation);
+        let asks = |truth: &Truth| {
+            (truth.quantity == Quantity::Meters, truth.crop_px.is_some(), polarised(truth), truth.band_nm)
+        };
+        let same =
+            self.truth.scene == truth.scene && self.truth.files == truth.files && asks(self.truth) == asks(truth);
+        same.then_some(Self { truth, ..self })
     }
 
     /// The scene as each replicate renders it.
@@ -71,11 +88,11 @@ impl<'a> Measurement<'a> {
         if truth.quantity == Quantity::Meters {
             return scene.measured(1).ok_or_else(|| "the scene has no meters".to_owned());
         }
-        if args.thorough && truth.crop_px.is_none() {
-            // The whole film as one pixel, with the samples of all: points that are spread evenly over it and over whatever follows,
-            // where each of a thousand pixels would have a handful. Another picture than by default, with the same mean.
+        if truth.crop_px.is_none() {
+            // Fewer pixels, with the samples of all: the same mean, of points that are spread more evenly over the film and over whatever
+            // follows. For a thorough run as few as there can be.
+            let side = if args.thorough { gcd(scene.film.width, scene.film.height) } else { merged_side_px(&scene) };
             let film = &mut scene.film;
-            let side = gcd(film.width, film.height);
             (film.width, film.height) = (film.width / side, film.height / side);
             scene.integrator.spp = scene.integrator.spp.saturating_mul(side * side);
         }
@@ -84,6 +101,7 @@ impl<'a> Measurement<'a> {
 
     /// Goes on to this many times the samples of the first step.
     fn render_to(&mut self, effort: u32, significance: f64, interrupt: &Interrupt) -> Result<Reading, Stop> {
+        self.effort = effort;
         for series in [Some(&mut self.of_truth), self.of_white.as_mut()].into_iter().flatten() {
             series.render_to(self.first_spp.saturating_mul(effort), interrupt)?;
         }
@@ -124,6 +142,22 @@ impl<'a> Measurement<'a> {
     }
 }
 
+/// The side of the squares of pixels that become one pixel each, so that a first step with one sample per pixel takes no more samples than its
+/// share.
+fn merged_side_px(scene: &Scene) -> u32 {
+    let (film, integrator) = (&scene.film, &scene.integrator);
+    // What a wide filter takes from beyond the film, and what neighbours share, depends on the size of pixels.
+    if film.filter != Filter::Box || integrator.path_reuse != PathReuse::None {
+        return 1;
+    }
+    let fits = |side: &u32| {
+        let least = film.width.min(film.height) / side >= LEAST_SIDE_PX;
+        let divides = film.width.is_multiple_of(*side) && film.height.is_multiple_of(*side);
+        least && divides && side * side * integrator.spp <= FIRST * REPLICATES
+    };
+    (1..=64).rev().find(fits).unwrap_or(1)
+}
+
 /// Greatest common divisor.
 fn gcd(a: u32, b: u32) -> u32 {
     if b == 0 { a } else { gcd(b, a % b) }
@@ -143,8 +177,10 @@ pub(super) fn run(args: &VerifyArgs, chosen: Vec<Truth>) -> Outcome {
     let mut report = Report::new(!args.json).with_seed(args.seed).of(chosen.len());
     let mut costs = Vec::with_capacity(chosen.len());
     let signal = || interrupt.signal().expect("nothing else ends a measurement early");
+    // Readings of one scene follow each other.
+    let mut last = None;
     for (index, truth) in chosen.iter().enumerate() {
-        let Some((row, cost)) = judged(args, truth, None, significance, &interrupt) else {
+        let Some((row, cost)) = judged(args, truth, None, significance, &interrupt, &mut last) else {
             return report.interrupted(signal(), &chosen[index..]);
         };
         costs.push(Cost { sees: row.relative_resolution().filter(|_| row.passes()), ..cost });
@@ -153,7 +189,7 @@ pub(super) fn run(args: &VerifyArgs, chosen: Vec<Truth>) -> Outcome {
     let finer = if again { finer(&costs, RAYS_OF_ALL) } else { Vec::new() };
     report.announce_finer(finer.len());
     for (index, effort) in finer {
-        let Some((row, _)) = judged(args, &chosen[index], Some(effort), significance, &interrupt) else {
+        let Some((row, _)) = judged(args, &chosen[index], Some(effort), significance, &interrupt, &mut None) else {
             return report.interrupted(signal(), &[]);
         };
         report.replace(index, row);
@@ -196,23 +232,28 @@ fn finer(costs: &[Cost], rays_of_all: u64) -> Vec<(usize, u32)> {
     changed.map(|(index, (planned, _))| (index, planned.effort)).collect()
 }
 
-/// Renders and judges one truth, with this many times the samples of the first step, or as many as it takes. `None` if the program was asked
-/// to end before.
-pub(super) fn judged(
+/// Renders and judges one truth, with this many times the samples of the first step, or as many as it takes. The measurement before is gone on with
+/// if it has the same scene. `None` if the program was asked to end before.
+pub(super) fn judged<'a>(
     args: &VerifyArgs,
-    truth: &Truth,
+    truth: &'a Truth,
     effort: Option<u32>,
     significance: f64,
     interrupt: &Interrupt,
+    last: &mut Option<Measurement<'a>>,
 ) -> Option<(Row, Cost)> {
     let start = Instant::now();
-    let measured = Measurement::new(truth, args).map_err(Stop::Failed).and_then(|mut measurement| {
+    let known = last.take().and_then(|measurement| measurement.read_for(truth));
+    let made = known.map_or_else(|| Measurement::new(truth, args).map_err(Stop::Failed), Ok);
+    let measured = made.and_then(|mut measurement| {
         let (reading, effort) = match effort {
             Some(effort) => (measurement.render_to(effort, significance, interrupt)?, effort),
             None => measured(args, &mut measurement, significance, interrupt)?,
         };
         let cost = Cost { rays: measurement.rays(), effort, sees: None };
-        Ok((reading, measurement.paths(), measurement.cut_paths(), cost))
+        let (paths, cut) = (measurement.paths(), measurement.cut_paths());
+        *last = Some(measurement);
+        Ok((reading, paths, cut, cost))
     });
     let seconds = || start.elapsed().as_secs_f64();
     match measured {
@@ -237,7 +278,7 @@ fn measured(
 ) -> Result<(Reading, u32), Stop> {
     let truth = measurement.truth;
     let wanted = thorough_sees(&args.names, truth) * truth.value().abs();
-    let (mut effort, mut seen_before) = (1, f64::INFINITY);
+    let (mut effort, mut seen_before) = (measurement.effort.max(1), f64::INFINITY);
     loop {
         let reading = measurement.render_to(effort, significance, interrupt)?;
         if reading.cut_bias.is_infinite() {
@@ -250,9 +291,21 @@ fn measured(
         if enough && !(args.thorough && thorough()) {
             break Ok((reading, effort));
         }
-        effort = effort.saturating_mul(if enough { more_to_see(seen, wanted) } else { MORE_TO_COUNT });
+        effort = if enough {
+            effort.saturating_mul(more_to_see(seen, wanted))
+        } else {
+            to_count(effort, seen / truth.must_resolve())
+        };
         seen_before = seen;
     }
+}
+
+/// The effort after this one, by which a reading saw a bias of `times` what it must: about as much as it takes at 1/√n.
+fn to_count(effort: u32, times: f64) -> u32 {
+    let most = effort.saturating_mul(MORE_TO_COUNT);
+    let enough = (f64::from(effort) * times * times * SPARE).ceil();
+    // What is not a number goes on, too.
+    if enough < f64::from(most) { (enough as u32).max(effort + 1) } else { most }
 }
 
 /// How many times the samples of a reading that saw `seen` are taken to see `wanted`: at 1/√n as many as it takes, a power of two up to [`MORE`].
@@ -292,6 +345,15 @@ mod tests {
         let sees = |name: &str| thorough_sees(&[name.to_owned()], &truth);
         assert_eq!(sees("eye-in-glass"), 2e-4);
         assert_eq!([sees("eye"), thorough_sees(&[], &truth)], [2e-3; 2]);
+    }
+
+    #[test]
+    fn a_reading_that_is_almost_fine_enough_takes_little_more() {
+        assert_eq!(
+            [1.0001, 1.2, 1.4, 9.0, f64::NAN, f64::INFINITY].map(|times| to_count(100, times)),
+            [116, 166, 200, 200, 200, 200]
+        );
+        assert_eq!(to_count(1, 1.01), 2);
     }
 
     #[test]
