@@ -81,7 +81,7 @@ fn a_study_that_contradicts_the_scene_or_itself_is_refused() {
 }
 
 #[test]
-fn what_was_not_needed_can_be_measured() {
+fn what_effects_cost_and_would_cost_can_be_measured() {
     let folder = tempfile::tempdir().unwrap();
     let small = folder.path().join("small.json");
     changed_scene("furnace.json", &small, |scene| {
@@ -90,9 +90,13 @@ fn what_was_not_needed_can_be_measured() {
     });
     let report = etalon_line("explain {} --measure --json", [&small]).expect(0).json();
     let costs = report["costs"].as_array().unwrap();
-    let names: Vec<_> = costs.iter().map(|cost| cost["effect"].as_str().unwrap()).collect();
+    let names = |on: bool| -> Vec<&str> {
+        let of = costs.iter().filter(|cost| cost["on"] == on);
+        of.map(|cost| cost["effect"].as_str().unwrap()).collect()
+    };
+    assert_eq!(names(true), ["environment"]);
     assert_eq!(
-        names,
+        names(false),
         [
             "wavelengths",
             "dispersion",
@@ -107,7 +111,8 @@ fn what_was_not_needed_can_be_measured() {
     );
     assert!(costs.iter().all(|cost| cost["ratio"].as_f64().unwrap() > 0.0));
     let text = etalon_line("explain {} --measure", [&small]).expect(0).stdout;
-    assert_eq!(text.matches("(would cost ").count(), names.len(), "{text}");
+    assert_eq!(text.matches("(would cost ").count(), names(false).len(), "{text}");
+    assert_eq!(text.matches("(costs ").count(), names(true).len(), "{text}");
 }
 
 #[test]

@@ -23,7 +23,8 @@ pub(crate) struct ExplainArgs {
     scene: PathBuf,
     #[command(flatten)]
     overrides: Overrides,
-    /// Measure what each effect that is off would cost, by short renders with and without it.
+    /// Measure what each effect costs, or would cost if it is off, and what light paths and guided directions cost, by short renders with and
+    /// without it.
     #[arg(long)]
     measure: bool,
     /// Print one JSON object on standard output.
@@ -53,15 +54,19 @@ struct ExplainJson<'a> {
     light_paths_per_pixel: f64,
     /// How many regions of the picture draw some wavelengths more often, and how many there are. Both are 0 where that does not pay.
     guided_wavelengths: (usize, usize),
-    /// What effects that are off would have cost, if it was measured.
+    /// What effects cost, or would have cost if they are off, and what light paths and guided directions cost, if it was measured.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     costs: Vec<Cost>,
 }
 
-/// The time of a render with an effect that nothing calls for, over that without.
+/// The time of a render with something, over that without.
 #[derive(Serialize)]
 struct Cost {
-    effect: EffectName,
+    /// An effect, or how paths are sampled.
+    #[serde(rename = "effect")]
+    of: &'static str,
+    /// Whether the scene is rendered with it.
+    on: bool,
     /// Median over the pairs.
     ratio: f64,
     /// First and third quartile.
@@ -123,7 +128,8 @@ fn describe(prepared: &Prepared, costs: &[Cost]) -> String {
     if let (share, bodies @ 1..) = prepared.guided_targets() {
         let share = format!("{:.0} % of the directions at diffuse surfaces aim at", 100.0 * share);
         let objects = if bodies == 1 { "object that mirrors or refracts" } else { "objects that mirror or refract" };
-        lines.push(format!("{:<20} {share} {bodies} {objects}: a trial found less noise", "caustics"));
+        let cost = cost_of(costs, GUIDED_DIRECTIONS);
+        lines.push(format!("{:<20} {share} {bodies} {objects}: a trial found less noise{cost}", "caustics"));
     }
     let per_pixel = prepared.light_paths_per_pixel();
     if per_pixel > 0.0 {
@@ -132,7 +138,7 @@ fn describe(prepared: &Prepared, costs: &[Cost]) -> String {
             LightTracing::Auto | LightTracing::Never => "a trial found less noise",
         };
         let what = format!("{per_pixel} a pixel and sample bring what mirrors and glass throw on the scene");
-        lines.push(format!("{:<20} {what}: {why}", "light paths"));
+        lines.push(format!("{:<20} {what}: {why}{}", "light paths", cost_of(costs, LIGHT_PATHS)));
     }
     if let (share, images @ 1..) = prepared.specular_light_images() {
         let share = format!("up to {:.0} % of the directions at diffuse surfaces aim at", 100.0 * share);
@@ -165,12 +171,18 @@ fn line(effect: &Effect, costs: &[Cost]) -> String {
         Some(Decision::LeftOut) => "left out, although needed by ",
         None => "",
     };
-    let cost = costs.iter().find(|cost| cost.effect == effect.name).map_or(String::new(), |cost| {
+    let cost = cost_of(costs, effect.name.as_str());
+    format!("{:<20} {state:<4} {study}{}{cost}", effect.name, effect.because)
+}
+
+/// What something costs, in words after what is said of it; nothing if that was not measured.
+fn cost_of(costs: &[Cost], what: &str) -> String {
+    costs.iter().find(|cost| cost.of == what).map_or(String::new(), |cost| {
         let percent = |ratio: f64| format!("{:+.0} %", 100.0 * (ratio - 1.0));
         let [low, high] = cost.quartiles.map(percent);
-        format!(" (would cost {}, quartiles {low} to {high})", percent(cost.ratio))
-    });
-    format!("{:<20} {state:<4} {study}{}{cost}", effect.name, effect.because)
+        let costs = if cost.on { "costs" } else { "would cost" };
+        format!(" ({costs} {}, quartiles {low} to {high})", percent(cost.ratio))
+    })
 }
 
 fn how(prepared: &Prepared) -> Vec<(&'static str, String)> {
@@ -216,29 +228,49 @@ fn how(prepared: &Prepared) -> Vec<(&'static str, String)> {
     ]
 }
 
+/// What is measured beside effects.
+const LIGHT_PATHS: &str = "light-paths";
+const GUIDED_DIRECTIONS: &str = "guided-directions";
+
 /// Pairs of renders that each cost is measured by.
 const PAIRS: usize = 9;
 
-/// What each effect that is off would have cost. The renders alternate, so that what else the machine does falls on both.
+/// What each effect costs, or would have cost, and light paths and guided directions where there are any.
 fn measure(scene: &Scene, study: &Study, lean: &Prepared) -> Result<Vec<Cost>, Failure> {
     let mut costs = Vec::new();
-    for effect in lean.plan().effects.iter().filter(|effect| !effect.on && effect.study.is_none()) {
-        let mut more = study.clone();
-        more.force.push(effect.name);
-        // What cannot be forced has no cost: there is nothing that it would do.
-        let Ok(forced) = prepare_study(scene, &more) else { continue };
-        let mut ratios = Vec::with_capacity(PAIRS);
-        for pair in 0..PAIRS {
-            // Whoever comes second finds warmer caches.
-            let (first, second) = if pair % 2 == 0 { (lean, &forced) } else { (&forced, lean) };
-            let times = [seconds(first)?, seconds(second)?];
-            ratios.push(if pair % 2 == 0 { times[1] / times[0] } else { times[0] / times[1] });
-        }
-        ratios.sort_by(f64::total_cmp);
-        let quartiles = [ratios[PAIRS / 4], ratios[PAIRS - 1 - PAIRS / 4]];
-        costs.push(Cost { effect: effect.name, ratio: ratios[PAIRS / 2], quartiles, pairs: PAIRS });
+    for effect in lean.plan().effects.iter().filter(|effect| effect.study.is_none()) {
+        let mut other = study.clone();
+        if effect.on { &mut other.without } else { &mut other.force }.push(effect.name);
+        // What cannot be forced or left out has no cost of its own.
+        let Ok(other) = prepare_study(scene, &other) else { continue };
+        costs.push(cost(effect.name.as_str(), effect.on, lean, &other)?);
+    }
+    if lean.light_paths_per_pixel() > 0.0 {
+        let mut camera_paths_alone = scene.clone();
+        camera_paths_alone.integrator.light_tracing = LightTracing::Never;
+        costs.push(cost(LIGHT_PATHS, true, lean, &prepared(&camera_paths_alone, study)?)?);
+    }
+    if lean.guided_targets().1 > 0 {
+        let by_cosine_alone = Study { by_cosine_alone: true, ..study.clone() };
+        costs.push(cost(GUIDED_DIRECTIONS, true, lean, &prepared(scene, &by_cosine_alone)?)?);
     }
     Ok(costs)
+}
+
+/// The time of renders with something over that without: `other` is without it if the scene has it `on`, else with it. The renders alternate, so
+/// that what else the machine does falls on both.
+fn cost(of: &'static str, on: bool, lean: &Prepared, other: &Prepared) -> Result<Cost, Failure> {
+    let (without, with) = if on { (other, lean) } else { (lean, other) };
+    let mut ratios = Vec::with_capacity(PAIRS);
+    for pair in 0..PAIRS {
+        // Whoever comes second finds warmer caches.
+        let (first, second) = if pair % 2 == 0 { (without, with) } else { (with, without) };
+        let times = [seconds(first)?, seconds(second)?];
+        ratios.push(if pair % 2 == 0 { times[1] / times[0] } else { times[0] / times[1] });
+    }
+    ratios.sort_by(f64::total_cmp);
+    let quartiles = [ratios[PAIRS / 4], ratios[PAIRS - 1 - PAIRS / 4]];
+    Ok(Cost { of, on, ratio: ratios[PAIRS / 2], quartiles, pairs: PAIRS })
 }
 
 /// How long one sample of each pixel takes.
