@@ -64,7 +64,7 @@ const ALL: [Foreign; 4] = [
     Foreign {
         file: "floor.obj",
         text: FLOOR,
-        lossy: "Tf 0.5 1 1\nillum 4\nd 0.2\n",
+        lossy: "Tf 0.5 1 1\nillum 4\n",
         approximated: "it becomes opaque",
         left_out: "material \"paint\": Tf is ignored",
         meshes: 2,

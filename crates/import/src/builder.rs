@@ -175,10 +175,10 @@ impl<'a> Builder<'a> {
         name: &str,
         mesh: Mesh,
         material: &Value,
-        emission: Option<Value>,
+        emission_and_detail: (Option<Value>, &Map<String, Value>),
     ) -> Result<(), String> {
         let file = self.mesh_file(&mesh);
-        self.add_object(name, &file, &mesh, material, (emission, &Map::new()), &DAffine3::IDENTITY);
+        self.add_object(name, &file, &mesh, material, emission_and_detail, &DAffine3::IDENTITY);
         Ok(())
     }
 

@@ -59,7 +59,7 @@ use std::path::{Path, PathBuf};
 
 use etalon_scene::mesh::read_ply;
 use etalon_scene::{Loaded, NamedFile, SceneErrors, read_file, shortened};
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 use builder::{Builder, Outside, Placed};
 
@@ -267,7 +267,7 @@ fn read(kind: &str, bytes: &[u8], options: &Options, builder: &mut Builder<'_>) 
                 false => ("colours", json!({ "type": "vertex-colours" })),
             };
             builder.materials.insert(name.to_owned(), json!({ "type": "lambert", "reflectance": reflectance }));
-            builder.add_mesh("mesh", part.mesh, &json!(name), None)
+            builder.add_mesh("mesh", part.mesh, &json!(name), (None, &Map::new()))
         }
         "obj" => obj::import(bytes, builder),
         "gltf" | "glb" => gltf::import(bytes, options, builder),

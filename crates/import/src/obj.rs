@@ -28,6 +28,8 @@ pub(crate) fn import(bytes: &[u8], builder: &mut Builder<'_>) -> Result<(), Stri
     // Of those with the same name the first counts.
     let glows: HashMap<&str, Option<[f32; 3]>> =
         file.materials.iter().rev().map(|material| (material.name.as_str(), material.emissive)).collect();
+    let opacities: HashMap<&str, f64> =
+        file.materials.iter().rev().filter_map(|material| Some((material.name.as_str(), opacity(material)?))).collect();
     for (i, part) in file.parts.into_iter().enumerate() {
         let name = part.name.unwrap_or_else(|| format!("faces {i}"));
         let named = part.material.filter(|name| builder.materials.contains_key(name));
@@ -44,13 +46,28 @@ pub(crate) fn import(bytes: &[u8], builder: &mut Builder<'_>) -> Result<(), Stri
         }
         let glow = named.as_ref().and_then(|name| *glows.get(name.as_str())?);
         let emission = glow.map(|rgb| rgb.map(f64::from)).filter(|rgb| rgb.iter().any(|v| *v > 0.0)).map(emission);
-        builder.add_mesh(&name, part.mesh, &material, emission)?;
+        let share = named.as_ref().and_then(|name| opacities.get(name.as_str()));
+        let opacity = share.map(|share| ("opacity".to_owned(), json!(share)));
+        builder.add_mesh(&name, part.mesh, &material, (emission, &opacity.into_iter().collect()))?;
     }
     Ok(())
 }
 
 fn emission(rgb: [f64; 3]) -> Value {
     json!({ "radiance": light(rgb.map(|v| v.max(0.0)), 1.0) })
+}
+
+/// The index of a material that is glass: it is said to refract, or is more clear than not.
+fn glass(material: &ObjMaterial) -> Option<f64> {
+    let index = f64::from(material.optical_density.unwrap_or(1.0));
+    let clear = material.dissolve.unwrap_or(1.0) < 0.5 || matches!(material.illumination_model, Some(4 | 6 | 7 | 9));
+    (clear && index > 1.0 && index.is_finite()).then_some(index)
+}
+
+/// The share of the light that meets a material that dissolves (`d`); `None` of glass, and of what light does not pass.
+fn opacity(material: &ObjMaterial) -> Option<f64> {
+    let share = f64::from(material.dissolve?);
+    (share < 1.0 && glass(material).is_none()).then_some(share.max(0.0))
 }
 
 /// What a material is here: glass where it is said to refract, a mirror where it only reflects, else diffuse.
@@ -76,13 +93,11 @@ fn material(material: &ObjMaterial, builder: &mut Builder<'_>) -> Value {
         }
     }
     let illumination = material.illumination_model.unwrap_or(2);
-    let index = f64::from(material.optical_density.unwrap_or(1.0));
-    let clear = material.dissolve.unwrap_or(1.0) < 0.5 || matches!(illumination, 4 | 6 | 7 | 9);
-    if clear && index > 1.0 && index.is_finite() {
+    if let Some(index) = glass(material) {
         return json!({ "type": "dielectric", "interior": index });
     }
-    if clear || material.dissolve.is_some_and(|d| d < 1.0) {
-        builder.approximate(&place, "d: it is transparent but has no index of refraction: it becomes opaque");
+    if matches!(illumination, 4 | 6 | 7 | 9) && opacity(material).is_none() {
+        builder.approximate(&place, "illum: it is transparent but has no index of refraction: it becomes opaque");
     }
     if matches!(illumination, 3 | 5) && diffuse.is_none_or(is_black) && !is_black(specular) {
         return json!({ "type": "mirror", "reflectance": reflectance(specular) });

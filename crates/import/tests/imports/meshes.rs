@@ -76,6 +76,20 @@ fn obj_materials_become_paint_mirrors_glass_and_lamps() {
     assert_eq!(self::scene(&lost).objects.len(), 1 + 3);
 }
 
+#[test]
+fn what_dissolves_in_an_obj_file_lets_light_by() {
+    let obj =
+        "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl veil\nf 1 2 3\nusemtl glass\nf 1 2 3\nusemtl wall\nf 1 2 3\n";
+    let mtl = "newmtl veil\nKd 0.5 0.5 0.5\nd 0.25\nnewmtl glass\nd 0.25\nNi 1.5\nnewmtl wall\nd 1\nillum 4\n";
+    let near = |name: &str| if name == "a.mtl" { Ok(mtl.as_bytes().to_vec()) } else { nothing(name) };
+    let imported = import_bytes("obj", obj.as_bytes(), &near, "", "a.obj").unwrap();
+    let scene = scene(&imported);
+    assert_eq!([0, 1, 2].map(|i: usize| scene.objects[i].opacity), [0.25, 1.0, 1.0]);
+    assert!(matches!(scene.materials[scene.objects[1].material].kind, MaterialKind::Dielectric { .. }));
+    let said: Vec<&str> = imported.left_out.iter().map(|l| l.what.as_str()).collect();
+    assert!(said.len() == 1 && said[0].contains("it becomes opaque"), "{said:?}");
+}
+
 /// A BMP file of one red pixel: 14 bytes of head, 40 of description, blue, green, red and a byte that fills the row.
 #[test]
 fn an_image_of_an_obj_file_may_be_a_bmp_file() {
