@@ -1,8 +1,18 @@
 //! `KHR_materials_iridescence`: a thin film on metals and on glass.
+//!
+//! The colours of a film depend on the phase of what the base reflects. glTF derives the base's index from its reflectance F₀ head-on, without
+//! absorption: (1 + √F₀)/(1 − √F₀). So a metal under a film has this index here, and not the 1 + ik of a bare one.
 
+use etalon_optics::Spectrum;
+use etalon_scene::Metal;
 use serde_json::{Value, json};
 
 use crate::Builder;
+use crate::checker::channels;
+
+/// Wavelengths at which the index of a coloured base is stated, nm: the first, the last and the steps between.
+const RANGE_NM: [f64; 2] = [360.0, 830.0];
+const STEPS: usize = 94;
 
 /// A film of a material.
 pub(super) struct Iridescence {
@@ -38,9 +48,21 @@ impl Iridescence {
         Some(Self { factor, film })
     }
 
-    /// A metal with it.
-    pub(super) fn on_metal(&self, bare: Value) -> Value {
+    /// A metal of a base colour with it.
+    pub(super) fn on_metal(&self, bare: Value, colour: &Value, place: &str, builder: &mut Builder<'_>) -> Value {
         let mut coated = bare.clone();
+        match index_below(colour) {
+            Some((wavelengths_nm, n)) => {
+                coated.as_object_mut().map(|keys| keys.remove("reflectance"));
+                coated["k"] = json!(vec![0.0; n.len()]);
+                (coated["wavelengths_nm"], coated["n"]) = (json!(wavelengths_nm), json!(n));
+                coated["outside_fit"] = json!("clamp");
+            }
+            None => {
+                let what = "below the film an image of the base colour is that of a metal of the index 1 + ik, not of a real one";
+                builder.approximate(format!("{place}.extensions.KHR_materials_iridescence"), what);
+            }
+        }
         coated["thin_film"] = self.film.clone();
         if self.factor == 1.0 {
             return coated;
@@ -62,4 +84,19 @@ impl Iridescence {
             glass["thin_film"] = self.film.clone();
         }
     }
+}
+
+/// The real index of a base of a colour, at wavelengths in nm; `None` of an image.
+fn index_below(colour: &Value) -> Option<(Vec<f64>, Vec<f64>)> {
+    let rgb = channels(colour)?;
+    let reflectance = Spectrum::rgb_reflectance(rgb).ok()?;
+    let steps = if rgb == [rgb[0]; 3] { 1 } else { STEPS };
+    let wavelengths: Vec<f64> =
+        (0..=steps).map(|i| RANGE_NM[0] + (RANGE_NM[1] - RANGE_NM[0]) * i as f64 / steps as f64).collect();
+    let index = |nm: &f64| {
+        let root = reflectance.eval(*nm).clamp(0.0, Metal::MOST_REFLECTANCE).sqrt();
+        (1.0 + root) / (1.0 - root)
+    };
+    let n = wavelengths.iter().map(index).collect();
+    Some((wavelengths, n))
 }

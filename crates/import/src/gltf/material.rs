@@ -133,9 +133,12 @@ impl<'d> Materials<'d> {
         }
         let ground = diffuse_transmission::over(ground, material, place, builder);
         let iridescence = Iridescence::of(material, place, builder);
-        let metal = || {
+        let metal = |builder: &mut Builder<'_>| {
             let bare = part("conductor", &roughness);
-            let metal = iridescence.as_ref().map_or(bare.clone(), |iridescence| iridescence.on_metal(bare));
+            let metal = match &iridescence {
+                Some(iridescence) => iridescence.on_metal(bare, &colour, place, builder),
+                None => bare,
+            };
             clear.as_ref().map_or(metal.clone(), |clear| clear.over_metal(metal))
         };
         if let Some(clear) = clear.as_ref().filter(|_| !matches!(metallic, Number::Value(0.0))) {
@@ -148,8 +151,11 @@ impl<'d> Materials<'d> {
         let is_metal = matches!(metallic, Number::Value(1.0));
         let value = match metallic {
             Number::Value(0.0) => ground,
-            Number::Value(1.0) => metal(),
-            share => share.mixed(ground, metal()),
+            Number::Value(1.0) => metal(builder),
+            share => {
+                let metal = metal(builder);
+                share.mixed(ground, metal)
+            }
         };
         let mut value = self.with_sheen(value, material, &mut uv_set, (place, buffers, clear.is_some()), builder);
         if is_metal || !diffuse_transmission::passes(material) {

@@ -1,7 +1,7 @@
 //! What materials of glTF say: roughness, metalness, anisotropy, films, coats, masks.
 
 use super::{PNG, imported, model, scene, widths};
-use etalon_scene::{Encoding, Image, MaterialKind, NumberTexture, Scene, SpectrumTexture, UvMap, Wrap};
+use etalon_scene::{Encoding, Image, MaterialKind, Metal, NumberTexture, Scene, SpectrumTexture, UvMap, Wrap};
 use serde_json::{Value, json};
 
 #[test]
@@ -220,6 +220,17 @@ fn iridescence_of_gltf_arrives_as_a_thin_film() {
     assert_eq!((parts[0].1.film(), layer(&parts[1].1), by.mean()), (None, (400.0, 1.3), 0.5));
     let (glass, _) = with(whole.clone(), 0.0, true);
     assert!(matches!(glass, MaterialKind::Dielectric { film: Some(_), .. }), "{glass:?}");
+    // Below it the base has the real index of its reflectance: (1 + ½)/(1 − ½).
+    let mut model = model();
+    model["materials"][0] = json!({
+        "pbrMetallicRoughness": { "metallicFactor": 1, "roughnessFactor": 0, "baseColorFactor": [0.25, 0.25, 0.25, 1] },
+        "extensions": { "KHR_materials_iridescence": whole.clone() },
+    });
+    let scene = scene(&imported(&model).unwrap());
+    let kind = &scene.materials[scene.groups[scene.instances[0].group].objects[0].material].kind;
+    let MaterialKind::Conductor { metal: Metal::Index(index), .. } = kind else { panic!("{kind:?}") };
+    let (n, k) = index.eval(500.0);
+    assert!((n - 3.0).abs() < 1e-9 && k == 0.0, "{n} {k}");
     // What has none, or cannot have one.
     let (bare, said) = with(json!({ "iridescenceFactor": 0 }), 1.0, false);
     assert!(bare.film().is_none() && !said.contains("film"), "{said}");
