@@ -50,19 +50,19 @@ impl ClearCoat {
         Some(Self { factor, roughness })
     }
 
-    /// What is not metal with it: `ground` is a diffuse base of a colour, bare or under a coat of an index.
+    /// What is not metal with it: `ground` is a diffuse base of a colour, bare or under a coat of its own of an index.
     pub(super) fn over_ground(
         &self,
         ground: Value,
         colour: &Value,
-        index: f64,
+        own: Option<f64>,
         place: &str,
         builder: &mut Builder<'_>,
     ) -> Value {
         let mut coated =
             json!({ "type": "plastic", "reflectance": colour, "coat": 1.5, "internal_reflection": "uncoloured" });
         self.roughness.put_as_roughness(None, &mut coated);
-        if ground["type"] != "lambert" {
+        if let Some(index) = own {
             let own = ((index - 1.0) / (index + 1.0)).powi(2);
             let what = format!(
                 "it takes the place of the base's own coat, which would reflect {:.3} of the light head-on below it",

@@ -12,6 +12,7 @@ use super::image::TextureTransform;
 use super::iridescence::Iridescence;
 use super::number::{Number, data_image};
 use super::sheen::{self, Fit};
+use super::specular::{self, Specular};
 use super::volume;
 use crate::{Builder, light};
 
@@ -90,6 +91,7 @@ impl<'d> Materials<'d> {
             }
             clearcoat::leave_out(material, place, builder);
             sheen::leave_out(material, place, builder);
+            specular::leave_out(material, place, builder);
             let interior = index(material, place, builder);
             let mut glass = json!({ "type": "dielectric", "interior": interior });
             let (base, mut uv_set) = self.base_colour(&surface, place, buffers, builder);
@@ -119,17 +121,20 @@ impl<'d> Materials<'d> {
             part
         };
         let metallic = Number::new(decimal(metallic), "blue", numbers.as_ref());
-        let mut ground = part("plastic", &roughness);
-        ground["coat"] = index(material, place, builder);
-        // The coat takes away what it reflects, and no more: the base colour is that of the whole.
-        ground["internal_reflection"] = json!("uncoloured");
-        if material.specular().is_some_and(|specular| specular.specular_factor() == 0.0) || ground["coat"] == json!(1.0)
-        {
-            ground = json!({ "type": "lambert", "reflectance": colour });
+        let specular = Specular::of(material, self, &mut uv_set, place, buffers, builder);
+        let mut ground = json!({ "type": "lambert", "reflectance": colour });
+        let own = specular.coat(material, place, builder);
+        if let Some(own) = &own {
+            let mut coated = part("plastic", &roughness);
+            coated["coat"] = own.clone();
+            // The coat takes away what it reflects, and no more: the base colour is that of the whole.
+            coated["internal_reflection"] = json!("uncoloured");
+            ground = specular.over(ground, coated, place, builder);
         }
         let clear = ClearCoat::of(material, self, &mut uv_set, place, buffers, builder);
         if let Some(clear) = clear.as_ref().filter(|_| !matches!(metallic, Number::Value(1.0))) {
-            ground = clear.over_ground(ground, &colour, decimal(material.ior().unwrap_or(1.5)), place, builder);
+            let own = own.as_ref().map(|own| own.as_f64().unwrap_or(decimal(material.ior().unwrap_or(1.5))));
+            ground = clear.over_ground(ground, &colour, own, place, builder);
         }
         let ground = diffuse_transmission::over(ground, material, place, builder);
         let iridescence = Iridescence::of(material, place, builder);
@@ -277,7 +282,7 @@ pub(super) fn decimal(value: f32) -> f64 {
 }
 
 /// The index of refraction: a number, or Cauchy's formula where the dispersion is stated.
-fn index(material: &gltf::Material<'_>, place: &str, builder: &mut Builder<'_>) -> Value {
+pub(super) fn index(material: &gltf::Material<'_>, place: &str, builder: &mut Builder<'_>) -> Value {
     let ior = decimal(material.ior().unwrap_or(1.5));
     if ior < 1.0 {
         builder.approximate(format!("{place}.extensions.KHR_materials_ior"), format!("an index of {ior} becomes 1.5"));
@@ -301,13 +306,6 @@ fn list_unhonoured(material: &gltf::Material<'_>, place: &str, builder: &mut Bui
     let no = "it is ignored";
     list(material.occlusion_texture().is_some(), "occlusionTexture", "it is ignored: shadows are traced");
     list(material.unlit(), "extensions.KHR_materials_unlit", "it is ignored: the surface is lit like any other");
-    let specular = material.specular().is_some_and(|specular| {
-        ![0.0, 1.0].contains(&specular.specular_factor())
-            || specular.specular_texture().is_some()
-            || specular.specular_color_factor() != [1.0; 3]
-            || specular.specular_color_texture().is_some()
-    });
-    list(specular, "extensions.KHR_materials_specular", "only the factors 0 and 1 can be converted");
     let opaque = material.transmission().is_none_or(|transmission| transmission.transmission_factor() < 0.5);
     let weak = material.transmission().is_some_and(|transmission| transmission.transmission_factor() > 0.0);
     list(weak && opaque, "extensions.KHR_materials_transmission", "a factor below 0.5 becomes opaque");

@@ -19,6 +19,7 @@ mod number;
 mod part;
 mod sheen;
 mod skin;
+mod specular;
 mod variants;
 mod volume;
 

@@ -61,6 +61,32 @@ impl Materials<'_> {
     }
 }
 
+impl Materials<'_> {
+    /// A factor on a channel of an image, if there is one that can be laid.
+    pub(super) fn factor_on(
+        &mut self,
+        (factor, info): (f64, Option<gltf::texture::Info<'_>>),
+        channel: &str,
+        at: &str,
+        uv_set: &mut Option<u32>,
+        buffers: &[Vec<u8>],
+        builder: &mut Builder<'_>,
+    ) -> Number {
+        let image = info.filter(|_| factor > 0.0).and_then(|info| self.image(&info, at, buffers, builder));
+        let Some((image, set)) = image else { return Number::Value(factor) };
+        if *uv_set.get_or_insert(set) != set {
+            builder.leave_out(at, "it uses another set of texture coordinates than the first image: it is left out");
+            return Number::Value(factor);
+        }
+        let mut laid = data_image(image);
+        laid["channel"] = json!(channel);
+        if factor != 1.0 {
+            laid["factor"] = json!(factor);
+        }
+        Number::Image(laid)
+    }
+}
+
 /// The same image as data: without what is said of colours.
 pub(super) fn data_image(mut image: Value) -> Value {
     if let Some(keys) = image.as_object_mut() {

@@ -8,6 +8,7 @@ mod morphs;
 mod shapes;
 mod sheens;
 mod skins;
+mod speculars;
 mod studio;
 mod variants;
 mod volumes;
