@@ -72,7 +72,8 @@ const ALL: [Foreign; 4] = [
     Foreign {
         file: "floor.gltf",
         text: GLTF,
-        lossy: r#", "extensions": { "KHR_materials_unlit": {}, "KHR_materials_transmission": { "transmissionFactor": 0.7 } }"#,
+        lossy: r#", "extensions": { "KHR_materials_unlit": {}, "KHR_materials_volume": { "thicknessFactor": 1 },
+  "KHR_materials_transmission": { "transmissionFactor": 0.7 } }"#,
         approximated: "it becomes fully transmitting",
         left_out: "the surface is lit like any other",
         meshes: 2,

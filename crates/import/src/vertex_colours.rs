@@ -38,7 +38,7 @@ pub(crate) fn resolve(material: &mut Value, known: Option<&(String, f64)>) -> bo
 pub(crate) fn tint(material: &mut Value) -> bool {
     let Value::Object(map) = material else { return false };
     let mut found = false;
-    if map.get("type").is_some_and(|kind| kind == "dielectric") {
+    if map.get("type").is_some_and(|kind| kind == "dielectric" || kind == "thin-dielectric") {
         map.entry("transmitted_tint").or_insert(json!(1.0));
     }
     for (key, value) in map.iter_mut() {

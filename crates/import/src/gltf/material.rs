@@ -6,13 +6,14 @@ use gltf::material::AlphaMode;
 use serde_json::{Map, Value, json};
 
 use super::anisotropy::Anisotropy;
-use super::clearcoat::{self, ClearCoat};
+use super::clearcoat::ClearCoat;
 use super::diffuse_transmission;
 use super::image::TextureTransform;
 use super::iridescence::Iridescence;
 use super::number::{Number, data_image};
-use super::sheen::{self, Fit};
-use super::specular::{self, Specular};
+use super::sheen::Fit;
+use super::specular::Specular;
+use super::transmission::{self, Passes};
 use super::volume;
 use crate::{Builder, light};
 
@@ -81,46 +82,33 @@ impl<'d> Materials<'d> {
     ) -> (Value, Option<u32>) {
         let surface = material.pbr_metallic_roughness();
         list_unhonoured(material, place, builder);
-        let (metallic, roughness) = (surface.metallic_factor(), surface.roughness_factor());
-        if let Some(transmission) = material.transmission()
-            && transmission.transmission_factor() >= 0.5
-        {
-            let at = format!("{place}.extensions.KHR_materials_transmission");
-            if transmission.transmission_factor() < 1.0 || transmission.transmission_texture().is_some() {
-                builder.approximate(&at, "it becomes fully transmitting");
-            }
-            clearcoat::leave_out(material, place, builder);
-            sheen::leave_out(material, place, builder);
-            specular::leave_out(material, place, builder);
-            let interior = index(material, place, builder);
-            let mut glass = json!({ "type": "dielectric", "interior": interior });
-            let (base, mut uv_set) = self.base_colour(&surface, place, buffers, builder);
-            let tinted = base != json!(1.0);
-            if tinted {
-                glass["transmitted_tint"] = base;
-            }
-            let numbers = self.numbers(&surface, place, &mut uv_set, buffers, builder);
-            let roughness = Number::new(decimal(roughness), "green", numbers.as_ref());
-            let anisotropy = Anisotropy::of(material, &roughness, place, builder);
-            if !roughness.put_as_roughness(anisotropy.as_ref(), &mut glass) && !tinted {
-                uv_set = None;
-            }
-            volume::put_in_glass(&mut glass, material, place, builder);
-            if let Some(iridescence) = Iridescence::of(material, place, builder) {
-                iridescence.put_on_glass(&mut glass, place, builder);
-            }
-            return (glass, uv_set);
-        }
         let (colour, mut uv_set) = self.base_colour(&surface, place, buffers, builder);
         let numbers = self.numbers(&surface, place, &mut uv_set, buffers, builder);
-        let roughness = Number::new(decimal(roughness), "green", numbers.as_ref());
+        let roughness = Number::new(decimal(surface.roughness_factor()), "green", numbers.as_ref());
+        let metallic = Number::new(decimal(surface.metallic_factor()), "blue", numbers.as_ref());
+        let is_metal = matches!(metallic, Number::Value(1.0));
+        let passes = match is_metal {
+            // What goes into metal is absorbed.
+            true => Passes::Nothing,
+            false => Passes::of(material, self, &roughness, &mut uv_set, (place, buffers), builder),
+        };
+        match &passes {
+            Passes::Solid => {
+                let (glass, has_image) = transmission::solid(material, colour, (&roughness, &metallic), place, builder);
+                return (glass, uv_set.filter(|_| has_image));
+            }
+            Passes::ThinWall(Number::Value(1.0)) if matches!(metallic, Number::Value(0.0)) => {
+                transmission::list_layers(material, place, builder);
+                return (transmission::pane(material, &colour, place, builder), uv_set);
+            }
+            _ => {}
+        }
         let anisotropy = Anisotropy::of(material, &roughness, place, builder);
         let part = |kind: &str, roughness: &Number| {
             let mut part = json!({ "type": kind, "reflectance": colour });
             roughness.put_as_roughness(anisotropy.as_ref(), &mut part);
             part
         };
-        let metallic = Number::new(decimal(metallic), "blue", numbers.as_ref());
         let specular = Specular::of(material, self, &mut uv_set, place, buffers, builder);
         let mut ground = json!({ "type": "lambert", "reflectance": colour });
         let own = specular.coat(material, place, builder);
@@ -132,11 +120,18 @@ impl<'d> Materials<'d> {
             ground = specular.over(ground, coated, place, builder);
         }
         let clear = ClearCoat::of(material, self, &mut uv_set, place, buffers, builder);
-        if let Some(clear) = clear.as_ref().filter(|_| !matches!(metallic, Number::Value(1.0))) {
+        if let Some(clear) = clear.as_ref().filter(|_| !is_metal) {
             let own = own.as_ref().map(|own| own.as_f64().unwrap_or(decimal(material.ior().unwrap_or(1.5))));
             ground = clear.over_ground(ground, &colour, own, place, builder);
         }
-        let ground = diffuse_transmission::over(ground, material, place, builder);
+        let mut ground = diffuse_transmission::over(ground, material, place, builder);
+        if let Passes::ThinWall(share) = &passes {
+            if clear.is_some() {
+                let what = "it covers only the share of the surface that does not pass light";
+                builder.approximate(format!("{place}.extensions.KHR_materials_clearcoat"), what);
+            }
+            ground = share.mixed(ground, transmission::pane(material, &colour, place, builder));
+        }
         let iridescence = Iridescence::of(material, place, builder);
         let metal = |builder: &mut Builder<'_>| {
             let bare = part("conductor", &roughness);
@@ -149,11 +144,10 @@ impl<'d> Materials<'d> {
         if let Some(clear) = clear.as_ref().filter(|_| !matches!(metallic, Number::Value(0.0))) {
             clear.list_on_metal(place, builder);
         }
-        if iridescence.is_some() && !matches!(metallic, Number::Value(1.0)) {
+        if iridescence.is_some() && !is_metal {
             let at = format!("{place}.extensions.KHR_materials_iridescence");
             builder.leave_out(at, "what is not metal and transmits no light has no film");
         }
-        let is_metal = matches!(metallic, Number::Value(1.0));
         let value = match metallic {
             Number::Value(0.0) => ground,
             Number::Value(1.0) => metal(builder),
@@ -164,7 +158,9 @@ impl<'d> Materials<'d> {
         };
         let mut value = self.with_sheen(value, material, &mut uv_set, (place, buffers, clear.is_some()), builder);
         if is_metal || !diffuse_transmission::passes(material) {
-            volume::leave_out(material, place, builder);
+            if !matches!(passes, Passes::ThinWall(_)) {
+                volume::leave_out(material, "it is ignored: the material does not transmit light", place, builder);
+            }
         } else {
             volume::fill_body(&mut value, material, place, builder);
         }
@@ -306,9 +302,6 @@ fn list_unhonoured(material: &gltf::Material<'_>, place: &str, builder: &mut Bui
     let no = "it is ignored";
     list(material.occlusion_texture().is_some(), "occlusionTexture", "it is ignored: shadows are traced");
     list(material.unlit(), "extensions.KHR_materials_unlit", "it is ignored: the surface is lit like any other");
-    let opaque = material.transmission().is_none_or(|transmission| transmission.transmission_factor() < 0.5);
-    let weak = material.transmission().is_some_and(|transmission| transmission.transmission_factor() > 0.0);
-    list(weak && opaque, "extensions.KHR_materials_transmission", "a factor below 0.5 becomes opaque");
     const KNOWN: [&str; 7] = [
         "KHR_materials_anisotropy",
         "KHR_materials_clearcoat",

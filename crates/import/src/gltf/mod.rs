@@ -20,6 +20,7 @@ mod part;
 mod sheen;
 mod skin;
 mod specular;
+mod transmission;
 mod variants;
 mod volume;
 

@@ -60,9 +60,8 @@ pub(super) fn fill_body(body: &mut Value, material: &gltf::Material<'_>, place: 
     }
 }
 
-/// Lists what would be inside of a body that lets no light in.
-pub(super) fn leave_out(material: &gltf::Material<'_>, place: &str, builder: &mut Builder<'_>) {
-    let what = "it is ignored: the material does not transmit light";
+/// Lists what would be inside of a body, and why it is not.
+pub(super) fn leave_out(material: &gltf::Material<'_>, what: &str, place: &str, builder: &mut Builder<'_>) {
     if material.volume().is_some_and(|volume| volume.attenuation_distance().is_finite()) {
         builder.leave_out(format!("{place}.extensions.KHR_materials_volume"), what);
     }

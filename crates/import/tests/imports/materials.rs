@@ -9,9 +9,10 @@ fn the_roughness_of_glass_comes_from_the_image_of_its_material() {
     let mut model = model();
     model["meshes"][0]["primitives"][1]["attributes"]["TEXCOORD_0"] = json!(2);
     let glass = &mut model["materials"][1];
-    glass["pbrMetallicRoughness"] = json!({ "metallicRoughnessTexture": { "index": 0 }, "roughnessFactor": 0.5 });
+    glass["pbrMetallicRoughness"] =
+        json!({ "metallicRoughnessTexture": { "index": 0 }, "roughnessFactor": 0.5, "metallicFactor": 0 });
     glass["extensions"]["KHR_materials_volume"] =
-        json!({ "attenuationDistance": 0.5, "attenuationColor": [0.5, 0.6, 0.7] });
+        json!({ "thicknessFactor": 1, "attenuationDistance": 0.5, "attenuationColor": [0.5, 0.6, 0.7] });
     let imported = imported(&model).unwrap();
     let scene = scene(&imported);
     let material = scene.materials.iter().find(|material| material.name == "glass").expect("the glass");
@@ -195,6 +196,7 @@ fn iridescence_of_gltf_arrives_as_a_thin_film() {
         });
         if transmits {
             material["extensions"]["KHR_materials_transmission"] = json!({ "transmissionFactor": 1 });
+            material["extensions"]["KHR_materials_volume"] = json!({ "thicknessFactor": 1 });
         }
         model["extensionsUsed"].as_array_mut().unwrap().push(json!("KHR_materials_iridescence"));
         model["materials"][0] = material;

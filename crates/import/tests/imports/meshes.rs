@@ -135,8 +135,8 @@ fn weak_transmission_and_filters_of_mtl_are_listed() {
     };
     let weak = |factor: f64| {
         let mut model = model();
-        model["materials"] =
-            json!([{ "extensions": { "KHR_materials_transmission": { "transmissionFactor": factor } } }]);
+        model["materials"] = json!([{ "pbrMetallicRoughness": { "metallicFactor": 0 }, "extensions": { "KHR_materials_volume": { "thicknessFactor": 1 },
+                "KHR_materials_transmission": { "transmissionFactor": factor } } }]);
         for primitive in model["meshes"]
             .as_array_mut()
             .unwrap()

@@ -10,6 +10,7 @@ mod sheens;
 mod skins;
 mod speculars;
 mod studio;
+mod transmissions;
 mod variants;
 mod volumes;
 
@@ -80,7 +81,8 @@ fn model() -> Value {
                 "baseColorTexture": { "index": 0, "extensions": {
                     "KHR_texture_transform": { "scale": [2, 4], "offset": [0.25, 0.5] } } } },
               "normalTexture": { "index": 0 } },
-            { "name": "glass", "pbrMetallicRoughness": { "roughnessFactor": 0 }, "extensions": {
+            { "name": "glass", "pbrMetallicRoughness": { "roughnessFactor": 0, "metallicFactor": 0 }, "extensions": {
+                "KHR_materials_volume": { "thicknessFactor": 1 },
                 "KHR_materials_transmission": { "transmissionFactor": 1 }, "KHR_materials_ior": { "ior": 1.6 },
                 "KHR_materials_dispersion": { "dispersion": 0.5 } } },
             { "name": "lamp", "emissiveFactor": [1, 0.5, 0], "pbrMetallicRoughness": { "roughnessFactor": 0.1, "baseColorFactor": [0.1, 0.1, 0.1, 1] },

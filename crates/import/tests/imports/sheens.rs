@@ -60,7 +60,7 @@ fn narrow_sheen_is_left_out_and_no_sheen_is_not_listed() {
     assert!(matches!(parts(&kind).0, MaterialKind::Blend { .. }));
     assert!(listed.iter().any(|line| line.contains("over the clear coat")), "{listed:?}");
     // Glass has none.
-    let glass = json!({ "extensions": { "KHR_materials_transmission": { "transmissionFactor": 1 } } });
+    let glass = json!({ "pbrMetallicRoughness": { "metallicFactor": 0 }, "extensions": { "KHR_materials_transmission": { "transmissionFactor": 1 } } });
     let (kind, listed) = with(glass, rough);
     assert!(!matches!(kind, MaterialKind::Blend { .. }) && listed.len() == 1, "{listed:?}");
 }

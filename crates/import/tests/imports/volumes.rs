@@ -44,7 +44,7 @@ fn reflected(rho: f64) -> f64 {
 fn glass_that_scatters_has_the_extinction_of_its_volume_and_the_albedo_of_its_colour() {
     for colour in [0.1, 0.2, 0.5, 0.9] {
         let (kind, medium, listed) = filled(
-            json!({}),
+            json!({ "metallicFactor": 0 }),
             json!({ "KHR_materials_transmission": { "transmissionFactor": 1 }, "KHR_materials_volume": half(),
                 "KHR_materials_volume_scatter": { "multiscatterColor": [colour, colour, colour], "scatterAnisotropy": 0.3 } }),
         );
@@ -65,6 +65,7 @@ fn glass_that_scatters_has_the_extinction_of_its_volume_and_the_albedo_of_its_co
 fn channels_scatter_by_the_formula_of_the_draft() {
     let mut model = model();
     model["materials"][0]["name"] = json!("body");
+    model["materials"][0]["pbrMetallicRoughness"] = json!({ "metallicFactor": 0 });
     model["materials"][0]["extensions"] = json!({ "KHR_materials_transmission": { "transmissionFactor": 1 },
         "KHR_materials_volume": half(), "KHR_materials_volume_scatter": { "multiscatterColor": [0.572, 0.227, 0.075] } });
     let scene: Value = serde_json::from_str(&imported(&model).unwrap().text).unwrap();
@@ -114,8 +115,8 @@ fn scattering_that_cannot_be_is_listed_by_its_name() {
             "the material does not transmit light",
         ),
         (
-            json!({}),
-            json!({ "KHR_materials_transmission": { "transmissionFactor": 1 } }),
+            json!({ "metallicFactor": 0 }),
+            json!({ "KHR_materials_transmission": { "transmissionFactor": 1 }, "KHR_materials_volume": { "thicknessFactor": 1 } }),
             "without a distance in KHR_materials_volume",
         ),
     ] {
@@ -127,7 +128,7 @@ fn scattering_that_cannot_be_is_listed_by_its_name() {
     }
     // Black scatters nothing: the glass only absorbs.
     let (_, medium, listed) = filled(
-        json!({}),
+        json!({ "metallicFactor": 0 }),
         json!({ "KHR_materials_transmission": { "transmissionFactor": 1 }, "KHR_materials_volume": half(), "KHR_materials_volume_scatter": {} }),
     );
     let medium = medium.expect("a medium");
