@@ -345,6 +345,13 @@ pub(super) const COMMANDS: &[(&str, &[Named])] = &[
                 Script("tests/peers/mitsuba/pbrt_twins.py"),
             ),
             named(
+                "compare-formats",
+                "[--write PAGE] [OPTIONS] [WORD …]",
+                "each construct of glTF and OBJ that is imported, against formulas of its specification; needs numpy",
+                "3 min",
+                Script("tests/peers/closed-forms/check.py"),
+            ),
+            named(
                 "compare-mitsuba",
                 "[--write PAGE] [OPTIONS] [NAME …]",
                 "each construct of Mitsuba that is imported, rendered by both programs; needs mitsuba",
