@@ -13,6 +13,7 @@ mod expose;
 mod farm;
 mod hostile;
 mod import;
+mod imported_light;
 mod instruction_sets;
 mod measure;
 mod outputs;
