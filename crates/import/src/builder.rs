@@ -276,6 +276,7 @@ impl<'a> Builder<'a> {
         }
         if stretched {
             let group = self.group_name(&placed.name);
+            self.keep_grids(&mut object, &placed.map.inverse());
             self.groups.insert(group.clone(), json!({ "objects": [object] }));
             self.instances.push(json!({ "name": placed.name, "group": group, "transform": steps(&placed.map) }));
         } else {

@@ -1,7 +1,7 @@
 //! What moves while the shutter is open, against closed forms and against what stands still.
 
 use etalon_oracle::truths::{Claim, truths};
-use etalon_scene::{SamplerKind, Scene};
+use etalon_scene::{NamedFile, SamplerKind, Scene, parse_with_files};
 use etalon_transport::{EffectName, Study, prepare_study};
 use serde_json::{Value, json};
 
@@ -16,7 +16,9 @@ fn truths_hold_and_reject_what_stands_still() {
     let moving: Vec<_> = truths().into_iter().filter(|truth| truth.claims.contains(&Claim::Motion)).collect();
     assert!(moving.len() >= 8);
     for truth in moving {
-        let mut scene = parse(&truth.scene);
+        let files: Vec<_> =
+            truth.files.iter().map(|file| NamedFile { name: file.name.clone(), bytes: file.bytes.clone() }).collect();
+        let mut scene = parse_with_files(&truth.scene, "test", &files, None).unwrap_or_else(|e| panic!("{e}")).scene;
         // The same number of paths whatever the film: 16 a pixel of the usual one, 2¹⁴ in all.
         scene.integrator.spp = (1 << 14) / (scene.film.width * scene.film.height);
         let film = render(&scene, &Study::default());

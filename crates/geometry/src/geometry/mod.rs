@@ -206,6 +206,13 @@ impl Geometry {
         instance.geometry().local_point(inner, instance.placement_at(time).local_point(point), time)
     }
 
+    /// A vector, carried as [`Geometry::local_point`] carries points.
+    #[inline]
+    pub fn local_vector(&self, surface: SurfaceId, vector: Vec3<f64>, time: f64) -> Vec3<f64> {
+        let Some((instance, inner)) = self.enter_instance(surface) else { return vector };
+        instance.geometry().local_vector(inner, instance.placement_at(time).local_vector(vector), time)
+    }
+
     /// The primitive of a surface, in the coordinates of the geometry that holds it.
     pub fn primitive_of(&self, surface: SurfaceId) -> &Primitive {
         match self.enter_instance(surface) {

@@ -9,6 +9,9 @@ use crate::matrix::{rows, steps};
 /// The objects, instances, bounds and emitted light of what is outside of a group that is being made.
 pub(crate) type Outside = (Vec<Value>, Vec<Value>, Bounds, f64);
 
+/// The keys of a medium that say what it is from place to place.
+const GRIDS: [&str; 2] = ["density", "albedo_grid"];
+
 impl Builder<'_> {
     pub(crate) fn group_name(&mut self, wanted: &str) -> String {
         self.group_names.name(wanted, &self.groups)
@@ -51,8 +54,43 @@ impl Builder<'_> {
             instance["transform"] = transform;
         }
         self.instances.push(instance);
+        self.list_moved_grids(group, place);
         self.enclose(bounds, map);
         self.count_emitted(group, map);
+    }
+
+    /// The material of an object, where a grid says how dense or how white its medium is from place to place.
+    fn material_with_grids(&self, object: &Value) -> Option<Value> {
+        let material = match &object["material"] {
+            Value::String(name) => self.materials.get(name)?,
+            own => own,
+        };
+        GRIDS.iter().any(|key| material["medium"][*key]["file"].is_string()).then(|| material.clone())
+    }
+
+    /// Keeps the grids of an object's medium where they are in the world, though its group is placed: by the map from the world to the group.
+    pub(super) fn keep_grids(&self, object: &mut Value, to_group: &DAffine3) {
+        let Some(mut material) = self.material_with_grids(object) else { return };
+        for key in GRIDS {
+            let grid = &mut material["medium"][key];
+            if grid["file"].is_string() {
+                let mut transform = grid["transform"].as_array().cloned().unwrap_or_default();
+                transform.push(json!({ "matrix": rows(to_group) }));
+                grid["transform"] = json!(transform);
+            }
+        }
+        object["material"] = material;
+    }
+
+    /// Lists the grids of media that move with a group, which other programs leave in the world.
+    fn list_moved_grids(&mut self, group: &str, place: &str) {
+        let objects = self.groups.get(group).and_then(|group| group["objects"].as_array());
+        if objects.into_iter().flatten().any(|object| self.material_with_grids(object).is_some()) {
+            self.approximate(
+                place,
+                "the grid of its medium is placed with the body; there it has coordinates of the world",
+            );
+        }
     }
 
     /// Counts the light that an instance of a group emits.

@@ -133,6 +133,34 @@ fn the_density_of_a_grid_falls_to_half_at_the_faces_of_its_box() {
     assert_eq!((grid.cells, said(&imported)), ([3; 3], vec![]));
 }
 
+/// A sphere that is stretched becomes a group, with which what fills it is placed. The grid has coordinates of the world there.
+#[test]
+fn a_grid_stays_in_the_world_where_its_sphere_is_stretched() {
+    let smoke = "\"string type\" \"uniformgrid\" \"float density\" [ 0 ]";
+    let text = file(smoke);
+    let plain = grid(&read(smoke).0).clone();
+    let stretched = text.replace("Shape", "Translate 1 2 3 Rotate 30 1 1 0 Scale 1 2 3 Shape");
+    let made = scene(&imported("pbrt", &stretched));
+    let [group] = made.groups.as_slice() else { panic!("{:?}", made.groups) };
+    let material = &made.materials[group.objects[0].material];
+    let within = grid(material.medium.as_ref().expect("it is filled")).transform.affine();
+    let placed = made.instances[0].transform.affine() * within;
+    assert!(placed.abs_diff_eq(plain.transform.affine(), 1e-12), "{placed:?}");
+}
+
+#[test]
+fn grids_that_are_placed_with_an_object_are_listed() {
+    let text = |medium: &str| {
+        format!(
+            "{}ObjectInstance \"o\"\n",
+            file(medium).replace("Shape \"sphere\"", "ObjectBegin \"o\" Shape \"sphere\" ObjectEnd")
+        )
+    };
+    let listed = said(&imported("pbrt", &text("\"string type\" \"uniformgrid\" \"float density\" [ 0 ]")));
+    assert!(listed.len() == 1 && listed[0].contains("the grid of its medium is placed with the body"), "{listed:?}");
+    assert_eq!(said(&imported("pbrt", &text("\"float sigma_a\" 1"))), Vec::<String>::new());
+}
+
 /// Four cells in a row, of which the outermost are empty.
 fn row(absorbed: &str, scattered: &str, further: &str) -> String {
     let row = |cells: &str| {

@@ -13,7 +13,7 @@ use crate::quadrature::interval;
 use crate::transfer::HalfSpace;
 
 pub(super) fn truths() -> Vec<Truth> {
-    let mut list = vec![beam(), turned(), lamp(), colour(), half_space()];
+    let mut list = vec![beam(), turned(), lamp(), placed(), colour(), half_space()];
     list.extend(["repeat", "mirror"].map(beyond));
     list
 }
@@ -188,6 +188,49 @@ fn lamp() -> Truth {
         .or_else("upside down", seen(&|z| share(x, y, 1.0 - z)))
         .sees(5e-3)
         .allows(1e-5 * value, "the picture is 0.1 mm wide; single precision 2e-5")
+}
+
+/// The same lamp in smoke that an instance turns by half a turn about an upright axis, and makes half as high.
+fn placed() -> Truth {
+    let ([x, y], h, height) = (AT, 0.3, 0.6);
+    let of = move |z: f64, share: f64| {
+        let d2 = h * h + (z - height).powi(2);
+        ALBEDO * PER_M / (4.0 * PI) * share / d2 * (-PER_M * (1.0 - z + d2.sqrt())).exp()
+    };
+    let seen = move |share: &dyn Fn(f64) -> f64| {
+        let part = |k: u32| interval(|z| of(z, share(z)), f64::from(k) / 32.0, f64::from(k + 1) / 32.0, 1e-12).value;
+        (0..32).map(part).sum::<f64>()
+    };
+    let placed = move |z: f64| share(-x, -y, 2.0 * z);
+    let value = seen(&placed);
+    let mut smoke = json!({ "extinction_per_m": PER_M, "albedo": ALBEDO });
+    smoke["albedo_grid"] = json!({ "file": "shares.vol" });
+    let body = json!({ "shape": block([-50.0, -50.0, 0.0], [50.0, 50.0, 2.0]), "material": boundary(&smoke) });
+    let place = json!([{ "rotate": { "axis": [0, 0, 1], "angle_deg": 180 } }, { "scale": [1, 1, 0.5] }]);
+    let lit = Scene::orthographic([x, y, 2.0], [x, y, 0.0], 1e-4)
+        .whole("groups", json!({ "smoke": { "objects": [body] } }))
+        .whole("instances", json!([{ "group": "smoke", "transform": place }]))
+        .file("shares.vol", vol([2, 2, 2], BOX_M, &CELLS))
+        .point_light([x + h, y, height], 1.0)
+        .depth(2)
+        .spp(256);
+    Truth::new(
+        "lamp-in-smoke-of-a-placed-grid-of-albedos",
+        &lit,
+        value,
+        "∫ σϖ/4π I/d² e^(−σ(s + d)) ds, the grid placed",
+    )
+    .because(BECAUSE)
+    .confirmed("midpoints along the ray", 1e-7, move || {
+        let n = 400_000;
+        let at = |i: u32| (f64::from(i) + 0.5) / f64::from(n);
+        (0..n).map(|i| of(at(i), placed(at(i)))).sum::<f64>() / f64::from(n)
+    })
+    .or_else("in the coordinates of the world", seen(&|z| share(x, y, z)))
+    .or_else("not turned", seen(&|z| share(x, y, 2.0 * z)))
+    .or_else("as high as before", seen(&|z| share(-x, -y, z)))
+    .sees(5e-3)
+    .allows(1e-5 * value, "the picture is 0.1 mm wide; single precision 2e-5")
 }
 
 /// A grid of one colour in daylight shows the luminance of that colour.

@@ -58,6 +58,7 @@ mod named;
 mod nested_media;
 mod panes;
 mod phase_matrices;
+mod placed_grids;
 mod polar_disks;
 mod polarised;
 mod principled;
@@ -368,7 +369,7 @@ pub fn truths() -> Vec<Truth> {
     LIST.clone()
 }
 
-const GROUPS: [fn() -> Vec<Truth>; 58] = [
+const GROUPS: [fn() -> Vec<Truth>; 59] = [
     lamps_behind_glass::truths,
     panes::truths,
     furnaces::truths,
@@ -415,6 +416,7 @@ const GROUPS: [fn() -> Vec<Truth>; 58] = [
     principled_tints::truths,
     media::truths,
     moving_media::truths,
+    placed_grids::truths,
     albedo_grids::truths,
     nested_media::truths,
     lit_fog::truths,

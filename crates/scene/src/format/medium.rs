@@ -122,7 +122,7 @@ crate::record! {
 }
 
 crate::variants! {
-    /// How dense a medium is at each place of the world.
+    /// How dense a medium is at each place: of the world, or of the group that holds the body which it fills.
     pub(crate) enum DensityForm by "type" {
         "exponential" => Exponential(ExponentialForm),
         "grid" => Grid(GridForm),
@@ -148,7 +148,7 @@ crate::record! {
         file: Required<Spanned<String>>,
         /// Factor on its numbers.
         scale: Required<NonNegative> = "1",
-        /// From the coordinates of the file's box to the world: steps, the first of which is applied first.
+        /// From the coordinates of the file's box to the world, or to those of the body's group: steps, the first of which is applied first.
         transform: Required<Spanned<List<Box<Step>>>> = "[]",
     }
 }
@@ -158,7 +158,7 @@ crate::record! {
     pub(crate) struct AlbedoGridForm + comment {
         /// A .vol file of one channel or of three (linear red, green and blue), relative to this file's folder.
         file: Required<Spanned<String>>,
-        /// From the coordinates of the file's box to the world: steps, the first of which is applied first.
+        /// From the coordinates of the file's box to the world, or to those of the body's group: steps, the first of which is applied first.
         transform: Required<Spanned<List<Box<Step>>>> = "[]",
         /// What holds beyond the box: the nearest value ("clamp"), or the box again ("repeat", "mirror").
         wrap: Required<Wrap> = r#""clamp""#,

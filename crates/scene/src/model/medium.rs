@@ -56,7 +56,7 @@ pub struct DensityGrid {
     pub values: Arc<[f32]>,
     /// Corners of the box in its own coordinates, m.
     pub box_m: [[f64; 3]; 2],
-    /// From these to the world.
+    /// From these to the world, or to the coordinates of the group that holds the body.
     pub transform: Transform,
 }
 
@@ -71,7 +71,7 @@ pub struct AlbedoGrid {
     pub values: Arc<[f32]>,
     /// Corners of the box in its own coordinates, m.
     pub box_m: [[f64; 3]; 2],
-    /// From these to the world.
+    /// From these to the world, or to the coordinates of the group that holds the body.
     pub transform: Transform,
     /// What holds beyond the box.
     pub wrap: Wrap,

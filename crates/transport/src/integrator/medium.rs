@@ -32,13 +32,13 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         let start = self.passed_at.unwrap_or(ray.origin);
         let mut length = f64::INFINITY;
         if let Some(vertex) = met {
-            self.stack.meet(vertex.surface.interior(), vertex.meets_front());
+            self.stack.meet(vertex.interior(), vertex.meets_front());
             length = (vertex.point.position - start).length();
         }
-        let Some(medium) = participating.around(world.media, &self.stack) else { return false };
+        let way = Way { origin: start, direction: ray.direction, length, time: ray.time };
+        let Some((medium, local)) = participating.along(world.media, &self.stack, &way) else { return false };
         let coefficients = medium.coefficients(&self.wavelengths.lambda_nm);
-        let way = Way { origin: start, direction: ray.direction, length };
-        let column_m = medium.column(&way) * participating.unit_m;
+        let column_m = medium.column(&local) * participating.unit_m;
         if let Some(emitted) = medium.emitted(&coefficients, &self.wavelengths.lambda_nm, column_m) {
             self.add(observer, Found::Medium, emitted, 1.0);
         }
@@ -48,7 +48,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         }
         // Sets from the other end than those of surfaces, which are what they are without media.
         let [coarse, fine, u_light, u_place] = sampler.set(u32::MAX - self.vertex);
-        let lit = MediumWay { medium, coefficients, way, unit_m: participating.unit_m };
+        let lit = MediumWay { medium, coefficients, way, local, unit_m: participating.unit_m };
         if world.lights_parts && self.edges(2) <= world.max_depth {
             self.add_light_beside(world, &lit, ray, [u_light, u_place], counters, observer);
         }
@@ -67,14 +67,14 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
                 false
             }
             Stretch::Scattered { column_m, weight, lane_density } => {
-                let distance = medium.distance(&way, column_m / participating.unit_m);
+                let distance = medium.distance(&local, column_m / participating.unit_m);
                 let mut vertex = self.medium_interaction(world, &lit, ray, distance);
                 let in_beams = beams.density(distance);
                 if in_beams > 0.0 {
                     let hero = lit.scattered_at(distance)[0];
                     vertex.share_of_connections = hero / (hero + in_beams);
                 }
-                self.beta *= weight * medium.albedo(&self.wavelengths.lambda_nm, vertex.point.position);
+                self.beta *= weight * medium.albedo(&self.wavelengths.lambda_nm, local.at(distance));
                 self.lanes.follow(lane_density);
                 self.stack = vertex.stack;
                 observer.scattering(self.vertex, vertex.point.position, self.beta);
@@ -93,7 +93,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         distance: f64,
     ) -> MediumInteraction<'a> {
         let MediumWay { medium, way, .. } = *lit;
-        let position = way.origin + way.direction * distance;
+        let position = way.at(distance);
         // Boundaries that change no medium may lie between the place and what the ray has met.
         let stack = self.walk.media_before((position - ray.origin).length()).unwrap_or(self.stack);
         let density = if world.lights_parts { self.lanes.mean_density(lit.scattered_at(distance)) } else { 0.0 };
@@ -229,6 +229,8 @@ pub(in crate::integrator) struct MediumWay<'a, const N: usize> {
     medium: &'a Medium,
     coefficients: Coefficients<N>,
     pub(super) way: Way,
+    /// The same in the coordinates of the medium.
+    local: Way,
     /// Metres in a unit of the frame.
     unit_m: f64,
 }
@@ -236,8 +238,8 @@ pub(in crate::integrator) struct MediumWay<'a, const N: usize> {
 impl<const N: usize> MediumWay<'_, N> {
     /// The share of light that comes through from a distance, times the density of the medium there and a unit's length.
     fn through(&self, distance: f64) -> Lanes<f64, N> {
-        let column_m = self.medium.column(&Way { length: distance, ..self.way }) * self.unit_m;
-        let density = self.medium.density(self.way.origin + self.way.direction * distance);
+        let column_m = self.medium.column(&Way { length: distance, ..self.local }) * self.unit_m;
+        let density = self.medium.density(self.local.at(distance));
         self.coefficients.transmittance(column_m) * (density * self.unit_m)
     }
 
@@ -248,7 +250,7 @@ impl<const N: usize> MediumWay<'_, N> {
 
     /// The share of light that a unit's length scatters at a distance and that comes to the beginning.
     pub(super) fn scattered_toward(&self, distance: f64, lambda_nm: &Lanes<f64, N>) -> Lanes<f64, N> {
-        let albedo = self.medium.albedo(lambda_nm, self.way.origin + self.way.direction * distance);
+        let albedo = self.medium.albedo(lambda_nm, self.local.at(distance));
         self.through(distance) * self.coefficients.scattering * albedo
     }
 }

@@ -160,7 +160,8 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         let transmittance = world.participating.as_ref().map(|participating| {
             let length = sample.target.distance(vertex.point().position);
             let stack = vertex.media_toward(self, sample.wi);
-            let way = Way { origin: vertex.point().position, direction: sample.wi, length };
+            let point = vertex.point();
+            let way = Way { origin: point.position, direction: sample.wi, length, time: point.time };
             participating.transmittance(world.media, &stack, &self.wavelengths.lambda_nm, &way)
         });
         Visibility { share: 1.0, transmittance }
@@ -183,12 +184,13 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             let met = world.intersect(ray, &mut walk, &mut stack, counters);
             let length = match &met {
                 Some(met) => {
-                    stack.meet(met.surface.interior(), met.meets_front());
+                    stack.meet(met.interior(), met.meets_front());
                     (met.point.position - start).length()
                 }
                 None => sample.target.distance(start),
             };
-            transmittance *= self.transmittance(world, &stack, &Way { origin: start, direction: sample.wi, length });
+            let way = Way { origin: start, direction: sample.wi, length, time: ray.time };
+            transmittance *= self.transmittance(world, &stack, &way);
             let Some(met) = met else { return Visibility { share, transmittance: Some(transmittance) } };
             let opacity = met.opacity(world);
             if met.point.surface == ray.aims_at || met.hit.t >= arrives && opacity == 1.0 {
@@ -205,19 +207,19 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         Visibility { share: 0.0, transmittance: None }
     }
 
-    /// What the medium along a way lets through up to the surface that it has met, or else up to a length. The path is in that medium then.
+    /// What the medium along a ray lets through from a point of it up to the surface that it has met, or else up to a length. The path is in that medium then.
     pub(super) fn transmittance_to(
         &mut self,
         world: &World<'a>,
-        (origin, direction): (Vec3<f64>, Vec3<f64>),
+        (origin, ray): (Vec3<f64>, &Ray<f64>),
         met: Option<&SurfaceInteraction<'a>>,
         otherwise: f64,
     ) -> Lanes<f64, N> {
         if let Some(met) = met {
-            self.stack.meet(met.surface.interior(), met.meets_front());
+            self.stack.meet(met.interior(), met.meets_front());
         }
         let length = met.map_or(otherwise, |met| (met.point.position - origin).length());
-        self.transmittance(world, &self.stack, &Way { origin, direction, length })
+        self.transmittance(world, &self.stack, &Way { origin, direction: ray.direction, length, time: ray.time })
     }
 
     pub(super) fn transmittance(&self, world: &World<'a>, stack: &MediumStack<'a>, way: &Way) -> Lanes<f64, N> {

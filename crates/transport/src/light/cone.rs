@@ -86,7 +86,7 @@ mod tests {
         ) {
             let toward = Vec3::from_array(toward);
             prop_assume!(toward.length() > 0.1 && radius + tangent > 0.0);
-            let way = Way { origin: Vec3::from_array(from), direction: toward.normalized(), length: 5.0 };
+            let way = Way { origin: Vec3::from_array(from), direction: toward.normalized(), length: 5.0, time: 0.0 };
             let cone = Cone { position: Vec3::new(0.1, 0.2, -0.1), axis: Vec3::new(0.48, 0.6, 0.64), radius, tangent };
             let [first, last] = cone.part(&way).unwrap_or([f64::NAN; 2]);
             for i in 0..500 {

@@ -172,7 +172,7 @@ mod tests {
             let toward = Vec3::from_array(toward);
             prop_assume!(toward.length() > 0.1);
             let slide = slide(tangents, EvenOn::Sphere);
-            let way = Way { origin: Vec3::from_array(from), direction: toward.normalized(), length: 5.0 };
+            let way = Way { origin: Vec3::from_array(from), direction: toward.normalized(), length: 5.0, time: 0.0 };
             let [first, last] = slide.part(&way).unwrap_or([f64::NAN; 2]);
             for i in 0..500 {
                 let t = 5.0 * (f64::from(i) + 0.5) / 500.0;

@@ -64,7 +64,7 @@ mod tests {
         let direction = Vec3::new(0.36, 0.48, 0.8);
         let point = Vec3::new(0.5, -0.2, 0.3);
         for length in [2.0, f64::INFINITY] {
-            let way = Way { origin: Vec3::new(0.1, 0.2, -0.5), direction, length };
+            let way = Way { origin: Vec3::new(0.1, 0.2, -0.5), direction, length, time: 0.0 };
             let seen = Equiangular::new(&way, [0.0, length], point).expect("it is beside the way");
             // The share of the light before the distance that is drawn by u is u.
             let mut share = 0.0;
@@ -79,7 +79,7 @@ mod tests {
                 at = to;
             }
         }
-        let on_the_line = Way { origin: point, direction, length: 1.0 };
+        let on_the_line = Way { origin: point, direction, length: 1.0, time: 0.0 };
         assert!(Equiangular::new(&on_the_line, [0.0, 1.0], point).is_none());
     }
 }

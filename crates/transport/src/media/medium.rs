@@ -61,25 +61,31 @@ impl Medium {
         Coefficients { absorption, scattering, extinction: absorption + scattering }
     }
 
-    /// The integral of its density over a way, in units of the frame.
+    /// Whether something of it is not the same everywhere, so that it matters where it is placed.
+    #[inline]
+    pub(super) fn varies(&self) -> bool {
+        self.density.varies() || self.albedo.is_some()
+    }
+
+    /// The integral of its density over a way in its coordinates, in units of the frame.
     #[inline]
     pub(crate) fn column(&self, way: &Way) -> f64 {
         self.density.column(way)
     }
 
-    /// Its density at a place.
+    /// Its density at a place in its coordinates.
     #[inline]
     pub(crate) fn density(&self, place: Vec3<f64>) -> f64 {
         self.density.at(place)
     }
 
-    /// The share of its scattering coefficient that is scattered at a place, in each lane; the rest is absorbed.
+    /// The share of its scattering coefficient that is scattered at a place in its coordinates, in each lane; the rest is absorbed.
     #[inline]
     pub(crate) fn albedo<const N: usize>(&self, lambda_nm: &Lanes<f64, N>, place: Vec3<f64>) -> Lanes<f64, N> {
         self.albedo.as_ref().map_or(Lanes::ONE, |grid| grid.lanes(lambda_nm, place))
     }
 
-    /// How far along a way a column is reached that is less than that of the whole way.
+    /// How far along a way in its coordinates a column is reached that is less than that of the whole way.
     #[inline]
     pub(crate) fn distance(&self, way: &Way, column: f64) -> f64 {
         self.density.distance(way, column)

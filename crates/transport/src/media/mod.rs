@@ -55,7 +55,7 @@ pub(crate) struct MediumStack<'a> {
     places: [PlacedSolid; DEPTH],
     len: usize,
     /// What the body around it holds that states both its sides.
-    body: Option<&'a Interior>,
+    body: Option<PlacedInterior<'a>>,
 }
 
 impl<'a> MediumStack<'a> {
@@ -69,7 +69,7 @@ impl<'a> MediumStack<'a> {
 
     /// Corrects it before a dielectric that states both its sides. Met from within, it is known to be its interior.
     #[inline(always)]
-    pub(crate) fn meet(&mut self, interior: Option<&'a Interior>, from_front: bool) {
+    pub(crate) fn meet(&mut self, interior: Option<PlacedInterior<'a>>, from_front: bool) {
         if let Some(interior) = interior.filter(|_| !from_front) {
             self.body = Some(interior);
         }
@@ -77,7 +77,7 @@ impl<'a> MediumStack<'a> {
 
     /// The media behind such a dielectric.
     #[inline(always)]
-    pub(crate) fn behind(&self, interior: Option<&'a Interior>, from_front: bool) -> Self {
+    pub(crate) fn behind(&self, interior: Option<PlacedInterior<'a>>, from_front: bool) -> Self {
         let mut behind = *self;
         if let Some(interior) = interior {
             behind.body = from_front.then_some(interior);
@@ -132,6 +132,9 @@ impl<'a> MediumStack<'a> {
     }
 }
 
+/// What a body holds, and the instance that places it (0 if it is in none).
+pub(crate) type PlacedInterior<'a> = (&'a Interior, u32);
+
 /// What a dielectric that states both its sides holds, or a body that is filled.
 #[derive(Clone, Debug)]
 pub(crate) struct Interior {
@@ -184,10 +187,10 @@ impl Media {
         (self.solid(place.0).map(|solid| solid.priority), place)
     }
 
-    /// The solid that fills a place, if one does.
+    /// The solid that fills a place, if one does, and the instance that places it.
     #[inline]
-    fn filling_solid(&self, stack: &MediumStack<'_>) -> Option<&Solid> {
-        self.filling(stack).and_then(|place| self.solid(place.0))
+    fn filling_solid(&self, stack: &MediumStack<'_>) -> Option<(&Solid, u32)> {
+        self.filling(stack).and_then(|place| Some((self.solid(place.0)?, place.1)))
     }
 
     /// The index at a place.

@@ -1,5 +1,9 @@
 //! Media along paths: which of them surrounds a path, what comes through, and where a path is scattered.
 //!
+//! **Coordinates.** What fills a body of a group has the coordinates of the group. A way is taken into them as an instance takes rays, at the
+//! ray's time and with a direction that is not normalised, so that lengths along it stay what they are. A medium that is the same everywhere
+//! needs none of this.
+//!
 //! **Wavelengths.** A path is scattered where the hero's extinction says. Lane j would have drawn the same distance t with the density
 //! σⱼe^(−σⱼt), and would have passed a stretch of the length d with the probability e^(−σⱼd). Both over the hero's go into the lanes' densities
 //! of the path ([`WavelengthModel::follow`](crate::integrator::wavelength_lanes::WavelengthModel::follow)), so that the balance heuristic
@@ -8,6 +12,8 @@
 
 use super::medium::{Coefficients, Medium};
 use super::{Media, MediumStack, Way};
+use crate::frame::SceneFrame;
+use etalon_geometry::{Geometry, SurfaceId};
 use etalon_optics::{Lanes, neg_ln};
 
 /// What the media of a scene do to light along paths.
@@ -17,19 +23,44 @@ pub(crate) struct Participating<'a> {
     pub unit_m: f64,
     /// What fills the space outside of all bodies.
     pub surrounding: Option<&'a Medium>,
+    /// What places the bodies.
+    pub geometry: &'a Geometry,
+    /// That of the scene: coordinates of groups are taken into it as those of the world.
+    pub frame: &'a SceneFrame,
 }
 
 impl<'a> Participating<'a> {
-    /// The medium at a place: `None` if it is clear.
+    /// The medium at a place, and the instance that places it: `None` if it is clear.
     #[inline]
-    pub(crate) fn around(&self, media: Option<&'a Media>, stack: &MediumStack<'a>) -> Option<&'a Medium> {
-        if let Some(interior) = stack.body {
-            return interior.medium.as_ref();
+    fn around(&self, media: Option<&'a Media>, stack: &MediumStack<'a>) -> Option<(&'a Medium, u32)> {
+        if let Some((interior, instance)) = stack.body {
+            return Some((interior.medium.as_ref()?, instance));
         }
         match media.and_then(|media| media.filling_solid(stack)) {
-            Some(solid) => solid.medium.as_ref(),
-            None => self.surrounding,
+            Some((solid, instance)) => Some((solid.medium.as_ref()?, instance)),
+            None => Some((self.surrounding?, 0)),
         }
+    }
+
+    /// The medium along a way, and the way in the coordinates of that medium: `None` if it is clear.
+    #[inline]
+    pub(crate) fn along(
+        &self,
+        media: Option<&'a Media>,
+        stack: &MediumStack<'a>,
+        way: &Way,
+    ) -> Option<(&'a Medium, Way)> {
+        let (medium, instance) = self.around(media, stack)?;
+        let is_placed = instance != 0 && medium.varies();
+        Some((medium, if is_placed { self.within(instance, way) } else { *way }))
+    }
+
+    /// A way in the coordinates of what an instance places.
+    fn within(&self, instance: u32, way: &Way) -> Way {
+        let placed = SurfaceId { instance, ..SurfaceId::NONE };
+        let origin = self.frame.point(self.geometry.local_point(placed, way.origin, way.time));
+        let direction = self.geometry.local_vector(placed, way.direction, way.time) * self.frame.per_m();
+        Way { origin, direction, ..*way }
     }
 
     /// The share of light that comes through a way, in each lane.
@@ -41,8 +72,8 @@ impl<'a> Participating<'a> {
         lambda_nm: &Lanes<f64, N>,
         way: &Way,
     ) -> Lanes<f64, N> {
-        match self.around(media, stack) {
-            Some(medium) => medium.coefficients(lambda_nm).transmittance(medium.column(way) * self.unit_m),
+        match self.along(media, stack, way) {
+            Some((medium, way)) => medium.coefficients(lambda_nm).transmittance(medium.column(&way) * self.unit_m),
             None => Lanes::ONE,
         }
     }

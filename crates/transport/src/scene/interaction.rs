@@ -12,7 +12,7 @@
 //! member after scattering leaves the whole group: it starts beyond all of them.
 
 use crate::film::Counters;
-use crate::media::{Interface, Media, MediumStack};
+use crate::media::{Interface, Media, MediumStack, PlacedInterior};
 use crate::scene::shading_tables::{BsdfKind, SmoothInterface};
 use crate::scene::world::{ShadowRays, World};
 use crate::surface::{Scattering, Surface};
@@ -80,6 +80,11 @@ impl<'a> SurfaceInteraction<'a> {
     ) {
         (self.hit, self.point, self.wo, self.surface) = (hit, point, -ray_direction, surface);
         (self.interface, self.crosses, self.is_open) = (None, false, false);
+    }
+
+    /// What the body holds that it bounds, where that states both its sides itself or is filled.
+    pub(crate) fn interior(&self) -> Option<PlacedInterior<'a>> {
+        Some((self.surface.interior()?, self.point.surface.instance))
     }
 
     /// Whether the path met the side that the normal points into.
@@ -219,7 +224,7 @@ impl<'a> Walk<'a> {
     pub(crate) fn behind(&self, met: &SurfaceInteraction<'a>, stack: &MediumStack<'a>) -> MediumStack<'a> {
         match met.crosses {
             true => self.beyond,
-            false => stack.behind(met.surface.interior(), met.meets_front()),
+            false => stack.behind(met.interior(), met.meets_front()),
         }
     }
 

@@ -366,7 +366,12 @@ impl Prepared {
     /// What media do to light along paths, if that is simulated.
     pub(crate) fn participating(&self) -> Option<Participating<'_>> {
         let acts = self.plan.runs(EffectName::Absorption) || self.plan.runs(EffectName::Scattering);
-        acts.then(|| Participating { unit_m: 1.0 / self.frame.per_m(), surrounding: self.surrounding.as_ref() })
+        acts.then(|| Participating {
+            unit_m: 1.0 / self.frame.per_m(),
+            surrounding: self.surrounding.as_ref(),
+            geometry: &self.geometry,
+            frame: &self.frame,
+        })
     }
 
     /// Width and height of the blocks of pixels that share paths, if any do.

@@ -139,7 +139,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             counters.rays += 1;
             let met = world.intersect(&ray, &mut walker.walk, &mut walker.stack, counters);
             if world.participating.is_some() {
-                left *= walker.transmittance_to(world, (start, ray.direction), met.as_ref(), f64::INFINITY);
+                left *= walker.transmittance_to(world, (start, &ray), met.as_ref(), f64::INFINITY);
                 let survival = goes_on(left);
                 if survival == 0.0 {
                     return None;

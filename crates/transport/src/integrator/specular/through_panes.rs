@@ -76,7 +76,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             let met = world.intersect(&ray, &mut walker.walk, &mut walker.stack, counters);
             if world.participating.is_some() {
                 let to_lamp = sample.target.distance(start);
-                left *= walker.transmittance_to(world, (start, sample.wi), met.as_ref(), to_lamp);
+                left *= walker.transmittance_to(world, (start, &ray), met.as_ref(), to_lamp);
             }
             let Some(mut met) = met else { return Some(ShadowPassed::by(walker, left, panes, 1.0)) };
             let stops = met.share_that_stops(world);

@@ -20,10 +20,20 @@ pub(super) use grid::to_cells;
 pub(crate) struct Way {
     /// Where it begins.
     pub origin: Vec3<f64>,
-    /// A unit vector.
+    /// A unit vector; in the coordinates of a medium that is placed, as the placement leaves it.
     pub direction: Vec3<f64>,
-    /// May be infinite.
+    /// Of the whole, in lengths of the direction. May be infinite.
     pub length: f64,
+    /// From 0 to 1 of the shutter's.
+    pub time: f64,
+}
+
+impl Way {
+    /// The place at a distance along it.
+    #[inline]
+    pub(crate) fn at(&self, distance: f64) -> Vec3<f64> {
+        self.origin + self.direction * distance
+    }
 }
 
 /// How dense a medium is at each place.
@@ -44,7 +54,13 @@ impl MediumDensity {
         }
     }
 
-    /// The integral of the density over a way, in units of the frame.
+    /// Whether it is not the same everywhere.
+    #[inline]
+    pub(crate) fn varies(&self) -> bool {
+        !matches!(self, Self::Uniform)
+    }
+
+    /// The integral of the density over a way, in lengths of its direction.
     #[inline]
     pub(crate) fn column(&self, way: &Way) -> f64 {
         match self {

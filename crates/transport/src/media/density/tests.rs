@@ -4,7 +4,7 @@ use super::*;
 use etalon_scene::{DensityGrid, ExponentialDensity, Transform};
 
 fn way(origin: [f64; 3], toward: [f64; 3], length: f64) -> Way {
-    Way { origin: Vec3::from_array(origin), direction: Vec3::from_array(toward).normalized(), length }
+    Way { origin: Vec3::from_array(origin), direction: Vec3::from_array(toward).normalized(), length, time: 0.0 }
 }
 
 /// The density at a point, by a formula of its own.
@@ -101,7 +101,7 @@ fn columns_are_sums_over_many_points() {
         for way in ways() {
             let n = 20_000;
             let step = way.length / f64::from(n);
-            let at = |i: i32| way.origin + way.direction * ((f64::from(i) + 0.5) * step);
+            let at = |i: i32| way.at((f64::from(i) + 0.5) * step);
             let sum: f64 = (0..n).map(|i| density_of(&density, at(i))).sum::<f64>() * step;
             let column = prepared.column(&way);
             // The midpoint rule errs by a step at each face of the box, and by 1e-8 elsewhere.
@@ -116,7 +116,7 @@ fn densities_at_places_are_those_of_the_formula() {
         let prepared = MediumDensity::new(&density, &SceneFrame::WORLD);
         for way in ways() {
             for i in 0..20 {
-                let place = way.origin + way.direction * (way.length * (f64::from(i) + 0.5) / 20.0);
+                let place = way.at(way.length * (f64::from(i) + 0.5) / 20.0);
                 let (found, known) = (prepared.at(place), density_of(&density, place));
                 assert!((found - known).abs() <= 1e-12 * known.max(1.0), "{place:?}: {found} is not {known}");
             }
