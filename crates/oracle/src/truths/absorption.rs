@@ -213,6 +213,7 @@ fn eye_within() -> Truth {
         .because(
             "From its middle the surface of the ball is r away in every direction; an index of 1 reflects nothing.",
         )
+        .confirmed("a million layers", 1e-6, || (1.0 - 1.5 * PER_M / 1e6).powi(1_000_000))
         .or_else("the eye taken to be outside", 1.0)
         .or_else("the diameter for the radius", (-3.0 * PER_M).exp())
 }
@@ -230,6 +231,7 @@ fn lamp_within() -> Truth {
             "The plate, the lamp d = 2 above it and the eye are in the same medium, of index 1. The plate is smaller than 1e-3, so that \
              the way to the lamp is the same from all of it to 1e-7.",
         )
+        .confirmed("a million layers", 1e-6, || 0.5 / PI * (1.0 - PER_M * 2.01 / 1e6).powi(1_000_000))
         .allows(1e-6, "the plate's extent, seen from the lamp and from the eye")
         .or_else("shadow rays are not absorbed", 0.5 / PI * (-PER_M * 0.01_f64).exp())
         .or_else("nothing is absorbed", 0.5 / PI)

@@ -10,8 +10,8 @@ use super::{
 };
 use crate::quadrature::interval;
 use crate::transfer::{
-    HalfSpace, Slab, ball_transmittance, by_scattering_orders, glow_of_point_lamp, henyey_greenstein, legendre_moments,
-    scattered_once,
+    HalfSpace, IsotropicSlab, Slab, ball_transmittance, by_scattering_orders, glow_of_point_lamp, henyey_greenstein,
+    legendre_moments, scattered_once,
 };
 
 pub(super) fn truths() -> Vec<Truth> {
@@ -162,6 +162,10 @@ fn half_spaces() -> Vec<Truth> {
     let truth =
         Truth::new("half-space-in-parallel-light", &lit, factor, "ϖ H(μ)H(μ₀)/(4(μ + μ₀)), ϖ = 0.9, μ = 1, μ₀ = 0.6")
             .because("Chandrasekhar's law of diffuse reflection, for an irradiance of π on the surface.")
+            .confirmed("Chandrasekhar's equation for H, by iteration", 4e-6, || {
+                let half_space = HalfSpace::new(0.9);
+                0.9 * half_space.h_by_iteration(1.0) * half_space.h_by_iteration(0.6) / 6.4
+            })
             .or_else("light scattered once alone", scattered_once(200.0, 0.9, 1.0, 1.0, 0.6))
             .sees(0.03)
             .allows(1e-6, WIDE);
@@ -214,7 +218,12 @@ fn slabs() -> Vec<Truth> {
             reflected = reflected.or_else("the phase function reversed", reversed.reflected);
             transmitted = transmitted.or_else("the phase function reversed", reversed.transmitted);
         }
-        if depth <= 2.0 {
+        if depth > 2.0 && g == 0.0 {
+            let again = "the integral equation for the source function";
+            let by_source = move || IsotropicSlab::new(depth, albedo).of_beam(1.0);
+            reflected = reflected.confirmed(again, 1e-5, move || by_source().reflected);
+            transmitted = transmitted.confirmed(again, 1e-5, move || by_source().transmitted);
+        } else {
             let again = "the transfer equation, order by order";
             reflected = reflected.confirmed(again, 2e-4, move || orders().reflected);
             transmitted = transmitted.confirmed(again, 2e-4, move || orders().transmitted);
@@ -239,6 +248,14 @@ fn scattered_once_in_slabs() -> Vec<Truth> {
         let once = |phase: f64| scattered_once(depth, albedo, phase, mu, mu_0);
         Truth::new(name, &scene(phase), once(value), "¼ϖ p(cos θ)(1 − e^(−τ(1/μ + 1/μ₀)))/(μ + μ₀)")
             .because("Each depth sends on what comes to it, and both ways take some away; paths of two edges.")
+            .confirmed("a sum over depths of what each sends on", 1e-8, move || {
+                let n = 20_000;
+                let at = |i: i32| depth * (f64::from(i) + 0.5) / f64::from(n);
+                let passes = |depth: f64| (-depth / mu_0).exp() * (-depth / mu).exp();
+                // An irradiance of π across the surface.
+                let sent = 0.25 / mu / mu_0 * albedo * value;
+                sent * depth / f64::from(n) * (0..n).map(|i| passes(at(i))).sum::<f64>()
+            })
             .or_else("nothing lost on the way to the eye", 0.25 * albedo * value * -(-depth / mu_0).exp_m1() / mu)
             .or_else("the albedo left out", once(value) / albedo)
             .or_else("the angle of scattering reversed", once(reversed))
@@ -376,6 +393,12 @@ fn glowing_ball() -> Truth {
         "½π(1 − (1 − (1 + 2x)e^(−2x))/2x²), x = σₐr",
     )
     .because("A chord of the length c shows B(1 − e^(−σₐc)).")
+    .confirmed("a sum over chords", 1e-7, move || {
+        // Rings of equal area of the disk, which fills π/4 of the picture.
+        let n = 200_000;
+        let chord = |i: u32| 2.0 * (1.0 - (f64::from(i) + 0.5) / f64::from(n)).sqrt();
+        0.25 * PI * 2.0 / f64::from(n) * (0..n).map(|i| -(-x * chord(i)).exp_m1()).sum::<f64>()
+    })
     .or_else("emission not absorbed on its way", 2.0 * 0.25 * PI * x * 4.0 / 3.0)
     .sees(5e-3)
 }
@@ -386,6 +409,7 @@ fn glowing_fog() -> Truth {
     let scene = Scene::orthographic([0.0; 3], [0.0, 0.0, -1.0], 0.1).whole("medium", fog).spp(64);
     Truth::new("endless-fog-that-glows", &scene, 1.0, "B")
         .because("Matter of one temperature without an end shows its source radiance, however much it scatters.")
+        .confirmed("scattering by scattering", 1e-12, || (0..200).map(|k| 0.2 * 0.8_f64.powi(k)).sum())
         .or_else("the albedo applied to emission", 0.2)
         .or_else("emission of the whole extinction", 5.0)
         .sees(5e-3)

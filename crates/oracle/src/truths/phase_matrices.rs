@@ -67,6 +67,13 @@ impl Particle {
         f11 / (2.0 * PI * (1.0 + f11))
     }
 
+    /// The same by Bohren & Huffman's matrix, over F₁₁: of light of intensity 1 whose Q, U and V these are in the plane of scattering. The picture's
+    /// right is the opposite of the field's direction within that plane, which turns the sign of U.
+    fn times_stokes(&self, [q, u, v]: [f64; 3]) -> [f64; 4] {
+        let [f11, f12, f22, f33, f34, f44] = self.matrix();
+        [f11 + f12 * q, f12 + f22 * q, -(f33 * u + f34 * v), f44 * v - f34 * u].map(|s| s / f11)
+    }
+
     /// S₀ to S₃ in a picture whose rows lie within the plane of scattering, for light of intensity 1 whose field this is across that plane
     /// and within it.
     fn scattered(&self, [across, within]: [Complex; 2]) -> [f64; 4] {
@@ -113,25 +120,33 @@ pub(super) fn truths() -> Vec<Truth> {
     let quarter = json!({ "type": "retarder", "axis": [0, 1, 0], "retardance_deg": 90 });
     let [one, none, part] = [[1.0, 0.0], [0.0, 0.0], [half, 0.0]];
     let mut list = Vec::new();
-    for (name, particle, sheets, field) in [
+    for (name, particle, sheets, field, stokes) in [
         (
             "circular-light-scattered-by-spheres",
             sphere,
             vec![quarter.clone(), slanting.clone()],
             [part, times(part, phase(90.0))],
+            [0.0, 0.0, -1.0],
         ),
         (
             "circular-light-scattered-by-grains-that-turn-it",
             turning,
             vec![quarter, slanting.clone()],
             [part, times(part, phase(90.0))],
+            [0.0, 0.0, -1.0],
         ),
-        ("slanting-light-scattered-by-spheres", sphere, vec![slanting.clone()], [part, part]),
-        ("light-across-scattered-by-grains", grain, vec![across], [one, none]),
-        ("slanting-light-scattered-by-grains", grain, vec![slanting], [part, part]),
+        ("slanting-light-scattered-by-spheres", sphere, vec![slanting.clone()], [part, part], [0.0, 1.0, 0.0]),
+        ("light-across-scattered-by-grains", grain, vec![across], [one, none], [-1.0, 0.0, 0.0]),
+        ("slanting-light-scattered-by-grains", grain, vec![slanting], [part, part], [0.0, 1.0, 0.0]),
     ] {
         let seen = particle.scattered(field);
         // Half of the irradiance passes the polariser; the light comes to a slab of endless height through 0.5 m of it.
+        let by_depths = move || {
+            let n = 20_000;
+            let step = DEPTH / f64::from(n);
+            let sent = (0..n).map(|i| PER_M * step * (-PER_M * (f64::from(i) + 0.5) * step).exp()).sum::<f64>();
+            0.5 * PI * particle.density() * sent * (-PER_M * 0.5_f64).exp()
+        };
         let single = 0.5 * particle.density() * PI * (1.0 - (-PER_M * DEPTH).exp()) * (-PER_M * 0.5_f64).exp();
         // Two sheets are harder to find a way through than one.
         let sees = if sheets.len() > 1 { 0.1 } else { 0.05 };
@@ -161,6 +176,9 @@ pub(super) fn truths() -> Vec<Truth> {
                     "Spheres multiply the field across the plane of scattering and that within it by two complex numbers; grains of any \
                      orientation add light that is not polarised.",
                 )
+                .confirmed("the Stokes vector times the matrix, depth by depth", 1e-8, move || {
+                    by_depths() * particle.times_stokes(stokes)[k]
+                })
                 .reads(quantity)
                 .claims(Claim::CarriesPolarisation)
                 .claims(Claim::SpecularConnections)
