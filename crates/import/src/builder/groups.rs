@@ -72,12 +72,10 @@ impl Builder<'_> {
     pub(super) fn keep_grids(&self, object: &mut Value, to_group: &DAffine3) {
         let Some(mut material) = self.material_with_grids(object) else { return };
         for key in GRIDS {
-            let grid = &mut material["medium"][key];
-            if grid["file"].is_string() {
-                let mut transform = grid["transform"].as_array().cloned().unwrap_or_default();
-                transform.push(json!({ "matrix": rows(to_group) }));
-                grid["transform"] = json!(transform);
-            }
+            let Some(grid) = material["medium"].get_mut(key).filter(|grid| grid["file"].is_string()) else { continue };
+            let mut transform = grid["transform"].as_array().cloned().unwrap_or_default();
+            transform.push(json!({ "matrix": rows(to_group) }));
+            grid["transform"] = json!(transform);
         }
         object["material"] = material;
     }
