@@ -13,9 +13,11 @@ import time
 
 import numpy as np
 
+import read_mitsuba
 import scenes
 
 PEERS = {"etalon": "peer_etalon", "mitsuba": "peer_mitsuba", "cycles": "peer_cycles", "luxcore": "peer_luxcore"}
+READ_XML = ("etalon", "mitsuba")
 
 
 def process_age():
@@ -23,6 +25,13 @@ def process_age():
         start = int(f.read().rsplit(")", 1)[1].split()[19]) / os.sysconf("SC_CLK_TCK")
     with open("/proc/uptime") as f:
         return float(f.read().split()[0]) - start
+
+
+def describe(peer_name, scene_name):
+    """The scene in the neutral form, or the file of a drawn one for a peer that reads it."""
+    if not scene_name.endswith(".xml"):
+        return scenes.SCENES[scene_name]()
+    return {"xml": scene_name} if peer_name in READ_XML else read_mitsuba.read(scene_name)
 
 
 def main():
@@ -42,8 +51,11 @@ def main():
         answer(missing="%s: %s" % (type(error).__name__, error))
         return
     ready_s = process_age()
-    # A drawn scene is a file.
-    scene = {"xml": scene_name} if scene_name.endswith(".xml") else scenes.SCENES[scene_name]()
+    try:
+        scene = describe(peer_name, scene_name)
+    except read_mitsuba.Unknown as error:
+        answer(missing="the scene has %s" % error)
+        return
     load_s = peer.load(scene)
     t = time.perf_counter()
     image, *_ = peer.render(1, 99)

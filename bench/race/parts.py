@@ -1,0 +1,131 @@
+"""Meshes and images of a scene's files as arrays, for renderers that do not read the files as Mitsuba does.
+
+Images are written again as linear EXR, so no renderer's colour management decides what an image means. Needs numpy, pillow and OpenEXR.
+"""
+import hashlib
+import json
+import os
+import pathlib
+
+import numpy as np
+
+import draw
+
+TYPES = {"char": "i1", "uchar": "u1", "short": "i2", "ushort": "u2", "int": "i4", "uint": "u4", "float": "f4", "double": "f8",
+         "int8": "i1", "uint8": "u1", "int16": "i2", "uint16": "u2", "int32": "i4", "uint32": "u4", "float32": "f4", "float64": "f8"}
+
+
+# -------------------------------------------------------------- meshes
+class Mesh:
+    """Triangles with a normal and texture coordinates at each corner point; uv may be None."""
+
+    def __init__(self, p, n, uv, faces):
+        self.p, self.n, self.uv, self.faces = p, n, uv, faces
+
+    def moved(self, matrix):
+        m = np.asarray(matrix, float)
+        n = self.n @ np.linalg.inv(m[:3, :3])
+        return Mesh(self.p @ m[:3, :3].T + m[:3, 3], n / np.linalg.norm(n, axis=1, keepdims=True), self.uv, self.faces)
+
+    def left_handed(self):
+        """Whether u, v and the normal are a left-handed frame on most triangles. Mitsuba's bitangent is n × u there, too."""
+        if self.uv is None:
+            return False
+        a, b, c = (self.uv[self.faces[:, k]] for k in range(3))
+        p, q, r = (self.p[self.faces[:, k]] for k in range(3))
+        turn = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
+        outward = (np.cross(q - p, r - p) * self.n[self.faces].sum(1)).sum(1)
+        return bool((np.sign(turn) * np.sign(outward)).sum() < 0)
+
+    def ply(self, path):
+        draw.ply(pathlib.Path(path), self.p, self.n, self.uv if self.uv is not None else np.zeros((len(self.p), 2)), self.faces)
+
+
+def smooth_normals(p, faces):
+    a, b, c = (p[faces[:, k]] for k in range(3))
+    n = np.zeros_like(p)
+    for k in range(3):
+        np.add.at(n, faces[:, k], np.cross(b - a, c - a))
+    return n / np.maximum(np.linalg.norm(n, axis=1, keepdims=True), 1e-30)
+
+
+def read_ply(path):
+    """A binary little-endian file whose faces are all triangles or all quadrilaterals."""
+    raw = pathlib.Path(path).read_bytes()
+    end = raw.index(b"end_header\n") + 11
+    lines = [line.split() for line in raw[:end].decode().splitlines()]
+    if ["format", "binary_little_endian", "1.0"] not in lines:
+        raise ValueError("%s is not binary little-endian" % path)
+    at, element, fields, count = end, None, {}, {}
+    for words in lines:
+        if words[0] == "element":
+            element, count[words[1]], fields[words[1]] = words[1], int(words[2]), []
+        elif words[0] == "property":
+            fields[element].append(words[1:])
+    if list(count)[:2] != ["vertex", "face"] or len(fields["face"]) != 1:
+        raise ValueError("%s has other elements than points and faces" % path)
+    vertex = np.frombuffer(raw, [(name, "<" + TYPES[kind]) for kind, name in fields["vertex"]], count["vertex"], at)
+    at += vertex.nbytes
+    _, size, index, _ = fields["face"][0]
+    corners = int(np.frombuffer(raw, "<" + TYPES[size], 1, at)[0])
+    face = np.frombuffer(raw, [("count", "<" + TYPES[size]), ("index", "<" + TYPES[index], corners)], count["face"], at)
+    if corners not in (3, 4) or (face["count"] != corners).any():
+        raise ValueError("%s has faces of several kinds" % path)
+    faces = face["index"].astype(np.int32)
+    faces = faces if corners == 3 else np.concatenate([faces[:, :3], faces[:, [0, 2, 3]]])
+    columns = lambda *names: np.stack([vertex[k] for k in names], 1).astype(float) if names[0] in vertex.dtype.names else None
+    p = columns("x", "y", "z")
+    n = columns("nx", "ny", "nz")
+    uv = columns("u", "v") if "u" in vertex.dtype.names else columns("s", "t")
+    return Mesh(p, n if n is not None else smooth_normals(p, faces), uv, faces)
+
+
+def quad(shape):
+    """A parallelogram with u along e1 and v along e2."""
+    c, e1, e2 = (np.array(shape[k], float) for k in ("corner", "e1", "e2"))
+    n = np.cross(e1, e2)
+    return Mesh(np.stack([c, c + e1, c + e1 + e2, c + e2]), np.tile(n / np.linalg.norm(n), (4, 1)),
+                np.array([[0, 0], [1, 0], [1, 1], [0, 1.0]]), np.array([[0, 1, 2], [0, 2, 3]]))
+
+
+# -------------------------------------------------------------- colours
+def internal_reflectance(index, steps=4096):
+    """Share of diffuse light that a smooth surface sends back inside: the integral of 2 F(μ) μ over the cosine μ."""
+    mu = (np.arange(steps) + 0.5) / steps
+    inside = 1 - index ** 2 * (1 - mu ** 2)
+    cos = np.sqrt(np.maximum(inside, 0))
+    s = ((mu - index * cos) / (mu + index * cos)) ** 2
+    p = ((index * mu - cos) / (index * mu + cos)) ** 2
+    return float((2 * mu * np.where(inside > 0, (s + p) / 2, 1)).mean())
+
+
+def under_coat(material):
+    """What becomes of a plastic's diffuse reflectance r that is told without its coat: r (1 − f)/(1 − f r), f the internal reflectance.
+
+    The peers' coats weaken what lies under them by what they reflect, but send nothing back inside."""
+    f = internal_reflectance(material["ior"])
+    return lambda r: r * (1 - f) / (1 - f * (r if material["nonlinear"] else 0))
+
+
+def linear(srgb):
+    return np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
+
+
+def image(colour, folder, change=None, upside_down=False):
+    """Writes the image of a colour as linear EXR and returns its path. `change` maps its values."""
+    import OpenEXR
+    from PIL import Image
+    # Grey stays grey and eight bits stay eight.
+    pixels = np.asarray(Image.open(colour["image"]).convert("RGB"), np.float64) / 255
+    pixels = pixels if colour["raw"] else linear(pixels)
+    pixels = np.ascontiguousarray((change(pixels) if change else pixels)[::-1 if upside_down else 1], np.float32)
+    key = hashlib.sha256(json.dumps([colour, upside_down], sort_keys=True).encode() + pixels.tobytes()).hexdigest()[:16]
+    path = os.path.join(folder, key + ".exr")
+    if not os.path.exists(path):
+        OpenEXR.File({"compression": OpenEXR.NO_COMPRESSION, "type": OpenEXR.scanlineimage}, {"RGB": pixels}).write(path)
+    return path
+
+
+def turn_green(pixels):
+    """A normal map for a left-handed frame."""
+    return np.stack([pixels[..., 0], 1 - pixels[..., 1], pixels[..., 2]], -1)
