@@ -52,12 +52,12 @@ def hdr(path, pixels):
     path.write_bytes(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y %d +X %d\n" % (height, width) + rgbe.tobytes())
 
 
-def ply(path, p, n, uv, faces):
-    """Writes a binary mesh with normals and texture coordinates."""
-    vertex = np.zeros(len(p), [(name, "<f4") for name in "x y z nx ny nz u v".split()])
+def ply(path, p, n, uv, faces, names="uv"):
+    """Writes a binary mesh with normals and texture coordinates, which have two names."""
+    vertex = np.zeros(len(p), [(name, "<f4") for name in ["x", "y", "z", "nx", "ny", "nz", *names]])
     for k, name in enumerate("xyz"):
         vertex[name], vertex["n" + name] = p[:, k], n[:, k]
-    vertex["u"], vertex["v"] = uv[:, 0], uv[:, 1]
+    vertex[names[0]], vertex[names[1]] = uv[:, 0], uv[:, 1]
     face = np.zeros(len(faces), [("count", "u1"), ("index", "<i4", 3)])
     face["count"], face["index"] = 3, faces
     properties = "".join("property float %s\n" % name for name in vertex.dtype.names)

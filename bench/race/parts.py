@@ -1,11 +1,13 @@
 """Meshes and images of a scene's files as arrays, for renderers that do not read the files as Mitsuba does.
 
-Images are written again as linear EXR, so no renderer's colour management decides what an image means. Needs numpy, pillow and OpenEXR.
+Images are written again as linear EXR, so no renderer's colour management decides what an image means. Needs numpy and pillow. It does not
+take the module OpenEXR, which ends the process when it is loaded beside LuxCore.
 """
 import hashlib
 import json
 import os
 import pathlib
+import struct
 
 import numpy as np
 
@@ -38,7 +40,8 @@ class Mesh:
         return bool((np.sign(turn) * np.sign(outward)).sum() < 0)
 
     def ply(self, path):
-        draw.ply(pathlib.Path(path), self.p, self.n, self.uv if self.uv is not None else np.zeros((len(self.p), 2)), self.faces)
+        """Writes it with the names of texture coordinates that LuxCore reads."""
+        draw.ply(pathlib.Path(path), self.p, self.n, self.uv if self.uv is not None else np.zeros((len(self.p), 2)), self.faces, "st")
 
 
 def smooth_normals(p, faces):
@@ -111,18 +114,33 @@ def linear(srgb):
     return np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
 
 
+def write_exr(path, pixels):
+    """Writes three channels of 32 bits, row by row, uncompressed."""
+    height, width, _ = pixels.shape
+    box = struct.pack("<4i", 0, 0, width - 1, height - 1)
+    channels = b"".join(name + b"\0" + struct.pack("<iB3xii", 2, 0, 1, 1) for name in (b"B", b"G", b"R")) + b"\0"
+    attributes = [(b"channels", b"chlist", channels), (b"compression", b"compression", b"\0"), (b"dataWindow", b"box2i", box),
+                  (b"displayWindow", b"box2i", box), (b"lineOrder", b"lineOrder", b"\0"), (b"pixelAspectRatio", b"float", struct.pack("<f", 1)),
+                  (b"screenWindowCenter", b"v2f", struct.pack("<2f", 0, 0)), (b"screenWindowWidth", b"float", struct.pack("<f", 1))]
+    head = struct.pack("<2i", 20000630, 2) + b"".join(
+        name + b"\0" + kind + b"\0" + struct.pack("<i", len(data)) + data for name, kind, data in attributes) + b"\0"
+    row = 12 * width
+    places = len(head) + 8 * height + (8 + row) * np.arange(height)
+    rows = np.zeros(height, [("y", "<i4"), ("size", "<i4"), ("bgr", "<f4", (3, width))])
+    rows["y"], rows["size"], rows["bgr"] = np.arange(height), row, pixels[..., ::-1].transpose(0, 2, 1)
+    pathlib.Path(path).write_bytes(head + places.astype("<u8").tobytes() + rows.tobytes())
+
+
 def image(colour, folder, change=None, upside_down=False):
     """Writes the image of a colour as linear EXR and returns its path. `change` maps its values."""
-    import OpenEXR
     from PIL import Image
-    # Grey stays grey and eight bits stay eight.
     pixels = np.asarray(Image.open(colour["image"]).convert("RGB"), np.float64) / 255
     pixels = pixels if colour["raw"] else linear(pixels)
     pixels = np.ascontiguousarray((change(pixels) if change else pixels)[::-1 if upside_down else 1], np.float32)
     key = hashlib.sha256(json.dumps([colour, upside_down], sort_keys=True).encode() + pixels.tobytes()).hexdigest()[:16]
     path = os.path.join(folder, key + ".exr")
     if not os.path.exists(path):
-        OpenEXR.File({"compression": OpenEXR.NO_COMPRESSION, "type": OpenEXR.scanlineimage}, {"RGB": pixels}).write(path)
+        write_exr(path, pixels)
     return path
 
 
