@@ -47,8 +47,8 @@ class Peer:
     def _share(self, c):
         return self._image(c) if "image" in c else float(np.mean(c["rgb"]))
 
-    def _fields(self, name, m, left):
-        """The nearest that LuxCore has. `left`: the texture coordinates are left-handed."""
+    def _fields(self, name, m):
+        """The nearest that LuxCore has."""
         if m["type"] == "diffuse":
             return {"type": "matte", "kd": self._colour(m["color"])}
         if m["type"] == "mirror":
@@ -64,16 +64,16 @@ class Peer:
             self.P("scene.textures.%s.k" % name, 3 * [m["k"]])
             return {"type": "metal2", "fresnel": name, "uroughness": m["alpha"], "vroughness": m["alpha"]}
         if m["type"] == "blend":
-            return {"type": "mix", "material1": self._part(name + "-0", m["of"][0], left),
-                    "material2": self._part(name + "-1", m["of"][1], left), "amount": self._share(m["weight"])}
+            return {"type": "mix", "material1": self._part(name + "-0", m["of"][0]),
+                    "material2": self._part(name + "-1", m["of"][1]), "amount": self._share(m["weight"])}
         if m["type"] == "mask":
             # LuxCore calls the opacity transparency.
-            return {**self._fields(name, m["of"], left), "transparency": self._share(m["opacity"])}
+            return {**self._fields(name, m["of"]), "transparency": self._share(m["opacity"])}
         if m["type"] == "normal-map":
-            image = self._image(m["normal"], parts.turn_green if left else None)  # before what refers to it
+            image = self._image(m["normal"])  # before what refers to it
             self.P("scene.textures.%s-n.type" % name, "normalmap")
             self.P("scene.textures.%s-n.texture" % name, image)
-            return {**self._fields(name, m["of"], left), "bumptex": name + "-n"}
+            return {**self._fields(name, m["of"]), "bumptex": name + "-n"}
         glass = {"kr": [1.0, 1.0, 1.0], "kt": [1.0, 1.0, 1.0], "exteriorior": m.get("outside", 1.0)}
         if m["type"] == "thin":
             return {"type": "archglass", **glass, "interiorior": m["ior"]}
@@ -81,17 +81,15 @@ class Peer:
             return {"type": "glass", **glass, "interiorior": m["cauchy"][0], "cauchyb": m["cauchy"][1]}  # LuxCore: ior is Cauchy's A
         return {"type": "glass", **glass, "interiorior": m.get("inside", m["ior"])}
 
-    def _part(self, name, m, left):
-        for key, value in self._fields(name, m, left).items():
+    def _part(self, name, m):
+        for key, value in self._fields(name, m).items():
             self.P("scene.materials.%s.%s" % (name, key), value)
         return name
 
-    def _material(self, name, left=False):
-        """The material of a name, made once for each handedness of texture coordinates."""
-        made = name + ("-left" if left else "")
-        if made not in self.made:
-            self.made.add(self._part(made, self.s["materials"][name], left))
-        return made
+    def _material(self, name):
+        if name not in self.made:
+            self.made.add(self._part(name, self.s["materials"][name]))
+        return name
 
     # ----------------------------------------------------------- scene
     def _camera(self, cam):
@@ -119,10 +117,9 @@ class Peer:
         once = self.uses[key] == 1
         if key not in self.meshes:
             mesh = parts.read_ply(sh["file"])
-            left = mesh.left_handed()
             file = os.path.join(self.folder.name, "s%d.ply" % i)
             (mesh.moved(sh["matrix"]) if once else mesh).ply(file)
-            self.meshes[key] = self._mesh("s%d" % i, file), self._material(sh["material"], left)
+            self.meshes[key] = self._mesh("s%d" % i, file), self._material(sh["material"])
         if not once:
             # Column by column.
             self.P("scene.objects.o%d.transformation" % i, [float(v) for v in np.array(sh["matrix"]).T.ravel()])

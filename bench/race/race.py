@@ -5,8 +5,8 @@
     python3 bench/race/race.py --scenes cornell,dof --entries etalon,mitsuba-spectral --spp 16,64 --rounds 4
     python3 bench/race/race.py --draw 12                         # twelve scenes drawn from the commit, see draw.py
 
-A drawn race takes the entries that read files of Mitsuba 3. It adds its scenes and figures to docs/log/drawn-races.jsonl, whatever
-they are: one line for each draw.
+A drawn scene is a file of Mitsuba 3. Etalon and Mitsuba read it themselves, read_mitsuba.py reads it for LuxCore and Cycles. A drawn
+race adds its scenes and figures to docs/log/drawn-races.jsonl, whatever they are: one line for each draw.
 
 Writes OUT/race.json and OUT/race.md (--out, default out/race). Needs numpy and OpenEXR, and target/release/etalon (or the
 variable ETALON); see README.md beside this file for the peers.
@@ -51,8 +51,7 @@ ENTRIES = {
 SPP = {"cornell": [16, 64], "glass": [16, 64], "prism": [64, 256], "prism-plain": [64, 256], "dof": [16, 64], "mesh1m": [16, 64]}
 
 
-READ_XML = ("etalon", "mitsuba")
-DRAWN_ENTRIES = ["etalon", "mitsuba-spectral", "mitsuba-rgb"]
+DRAWN_ENTRIES = ["etalon", "mitsuba-spectral", "mitsuba-rgb", "luxcore", "cycles"]
 LOG = ROOT / "docs/log/drawn-races.jsonl"
 
 
@@ -118,7 +117,7 @@ def time_to(levels, target):
 def run_scene(scene, names, args, folder):
     workers, missing = [], {}
     for name in names:
-        if scene in ENTRIES[name][3] or (scene.endswith(".xml") and ENTRIES[name][0] not in READ_XML):
+        if scene in ENTRIES[name][3]:
             continue
         worker = Worker(name, scene, args.threads, folder)
         if "missing" in worker.about:

@@ -45,9 +45,11 @@ const fn named(
 const PARTS: &[&str] = &[
     "bench/race/draw.py",
     "bench/race/hard.py",
+    "bench/race/parts.py",
     "bench/race/peer_cycles.py",
     "bench/race/peer_luxcore.py",
     "bench/race/peer_mitsuba.py",
+    "bench/race/read_mitsuba.py",
     "bench/race/scenes.py",
     "bench/race/worker.py",
     "tests/peers/closed-forms/films.py",
