@@ -55,7 +55,7 @@ class Peer:
             return {"type": "mirror", "kr": m["color"]["rgb"]}
         if m["type"] == "plastic":
             # It has no smooth coat but a sharp one.
-            alpha = max(m["alpha"], 0.01)
+            alpha = max(m["alpha"], 0.002)
             return {"type": "glossy2", "kd": self._colour(m["color"], parts.under_coat(m)), "ks": [1.0, 1.0, 1.0], "index": m["ior"],
                     "uroughness": alpha, "vroughness": alpha, "multibounce": False, "doublesided": True}
         if m["type"] == "metal":
@@ -100,6 +100,9 @@ class Peer:
         P("scene.camera.up", list(map(float, cam["up"])))
         assert cam["width"] >= cam["height"]
         P("scene.camera.fieldofview", cam["fov_x"])  # along the longer image side
+        # Its film lies one row too low. So the window is moved by one row.
+        row, half = 2 / cam["width"], cam["height"] / cam["width"]
+        P("scene.camera.screenwindow", [-1.0, 1.0, -half - row, half - row])
         P("scene.camera.cliphither", 1e-3)
         P("scene.camera.clipyon", 1e4)
         P("scene.camera.autofocus.enable", False)
