@@ -92,22 +92,42 @@ def quad(shape):
 
 
 # -------------------------------------------------------------- colours
-def internal_reflectance(index, steps=4096):
-    """Share of diffuse light that a smooth surface sends back inside: the integral of 2 F(μ) μ over the cosine μ."""
-    mu = (np.arange(steps) + 0.5) / steps
+def fresnel(mu, index):
+    """Reflectance at cosine mu, where the near side has `index` times the index of the far side."""
     inside = 1 - index ** 2 * (1 - mu ** 2)
     cos = np.sqrt(np.maximum(inside, 0))
-    s = ((mu - index * cos) / (mu + index * cos)) ** 2
-    p = ((index * mu - cos) / (index * mu + cos)) ** 2
-    return float((2 * mu * np.where(inside > 0, (s + p) / 2, 1)).mean())
+    s = ((index * mu - cos) / (index * mu + cos)) ** 2
+    p = ((mu - index * cos) / (mu + index * cos)) ** 2
+    return np.where(inside > 0, (s + p) / 2, 1)
+
+
+def diffuse_reflectance(index, alpha, steps=64):
+    """Share of diffuse light that a surface of GGX sends back: the mean over directions of F G, with visible normals as the quadrature."""
+    mid = (np.arange(steps) + 0.5) / steps
+    mu, u, v = np.meshgrid(np.sqrt(mid), mid, mid, indexing="ij")
+    alpha = max(alpha, 1e-4)
+    # The direction seen on the sphere that the ellipsoid of GGX is, and a point of its disk that faces it.
+    x, z = alpha * np.sqrt(1 - mu ** 2), mu
+    x, z = x / np.hypot(x, z), z / np.hypot(x, z)
+    a, b = np.sqrt(u) * np.cos(2 * np.pi * v), np.sqrt(u) * np.sin(2 * np.pi * v)
+    b = (1 - z) / 2 * np.sqrt(1 - a ** 2) + (1 + z) / 2 * b
+    c = np.sqrt(np.maximum(1 - a ** 2 - b ** 2, 0))
+    h = np.stack([alpha * (c * x - b * z), alpha * a, np.maximum(c * z + b * x, 0)])
+    h /= np.linalg.norm(h, axis=0)
+    cosine = np.sqrt(1 - mu ** 2) * h[0] + mu * h[2]
+    out = 2 * cosine * h[2] - mu
+    tan2 = (1 - out ** 2) / np.maximum(out, 1e-9) ** 2
+    return float((fresnel(cosine, index) * np.where(out > 0, 2 / (1 + np.sqrt(1 + alpha ** 2 * tan2)), 0)).mean())
 
 
 def under_coat(material):
-    """What becomes of a plastic's diffuse reflectance r that is told without its coat: r (1 − f)/(1 − f r), f the internal reflectance.
+    """What becomes of a plastic's diffuse reflectance r that is told without its coat: r t/(1 - f r).
 
+    f is the share that the coat sends back inside, t the share 1 - f that leaves (where the coat is rough Mitsuba's two do not add up to 1).
     The peers' coats weaken what lies under them by what they reflect, but send nothing back inside."""
-    f = internal_reflectance(material["ior"])
-    return lambda r: r * (1 - f) / (1 - f * (r if material["nonlinear"] else 0))
+    f = diffuse_reflectance(material["ior"], material["alpha"])
+    t = (1 - diffuse_reflectance(1 / material["ior"], material["alpha"])) / material["ior"] ** 2
+    return lambda r: r * t / (1 - f * (r if material["nonlinear"] else 1))
 
 
 def linear(srgb):
