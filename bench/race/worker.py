@@ -52,11 +52,10 @@ def main():
         return
     ready_s = process_age()
     try:
-        scene = describe(peer_name, scene_name)
-    except read_mitsuba.Unknown as error:
-        answer(missing="the scene has %s" % error)
+        load_s = peer.load(describe(peer_name, scene_name))
+    except (ImportError, ValueError) as error:
+        answer(missing="%s: %s" % (type(error).__name__, error))
         return
-    load_s = peer.load(scene)
     t = time.perf_counter()
     image, *_ = peer.render(1, 99)
     first_s = time.perf_counter() - t
