@@ -10,6 +10,7 @@ use etalon_transport::{Counters, Study};
 use miette::Report as Problem;
 
 use super::VerifyArgs;
+use super::finer::{Cost, finer};
 use super::report::{Report, Row};
 use super::series::{Series, Stop};
 use crate::failure::{Failure, Outcome};
@@ -30,11 +31,11 @@ const MOST_TO_COUNT: u32 = 1 << 11;
 /// Paths that are taken beyond those that would just do at 1/√n: what a reading has seen is known from its noise, to about a tenth.
 const SPARE: f64 = 1.15;
 /// A reading that counts takes this many times the paths to see more, or fewer where these will do.
-const MORE: u32 = 4;
+pub(super) const MORE: u32 = 4;
 /// What a thorough run wants to see of each truth, relative, and of those whose whole name was given. How many rays it spends on that for
 /// every truth, and how many where as many will do. In rays, not in seconds, so that what is read is the same on every machine.
 const THOROUGH_SEES: f64 = 2e-3;
-const THOROUGH_SEES_BY_NAME: f64 = 2e-4;
+pub(super) const THOROUGH_SEES_BY_NAME: f64 = 2e-4;
 const THOROUGH_RAYS: u64 = 32_000_000;
 const THOROUGH_REACH_RAYS: u64 = 4_096_000_000;
 /// Rays of a run of all truths. What the truths do not need for their mistakes goes to those that see the least.
@@ -197,41 +198,6 @@ pub(super) fn run(args: &VerifyArgs, chosen: Vec<Truth>) -> Outcome {
     report.finish()
 }
 
-/// What the measurement of a truth has cost, and what it saw.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Cost {
-    /// Rays of all kinds.
-    rays: u64,
-    /// Times the samples of the first step.
-    effort: u32,
-    /// Relative bias that it would have seen; `None` if more samples are of no use.
-    sees: Option<f64>,
-}
-
-/// Which truths are measured again when there are this many rays for all of them, and with how many times the samples of the first step.
-/// The next one is always the one that sees the least. Four times the samples are taken to see twice as much. What is measured again
-/// begins anew.
-fn finer(costs: &[Cost], rays_of_all: u64) -> Vec<(usize, u32)> {
-    let mut left = rays_of_all.saturating_sub(costs.iter().map(|cost| cost.rays).sum());
-    let mut planned: Vec<Cost> = costs.to_vec();
-    loop {
-        let open = planned.iter().enumerate().filter_map(|(index, cost)| Some((index, cost.sees?)));
-        let Some((worst, sees)) = open.max_by(|a, b| a.1.total_cmp(&b.1)) else { break };
-        let cost = &mut planned[worst];
-        // What is planned already is not rendered then.
-        let instead = if cost.effort > costs[worst].effort { cost.rays } else { 0 };
-        let (rays, effort) = (cost.rays.saturating_mul(u64::from(MORE)), cost.effort.saturating_mul(MORE));
-        if rays - instead > left || sees <= THOROUGH_SEES_BY_NAME {
-            cost.sees = None;
-            continue;
-        }
-        left -= rays - instead;
-        *cost = Cost { rays, effort, sees: Some(0.5 * sees) };
-    }
-    let changed = planned.iter().zip(costs).enumerate().filter(|(_, (planned, cost))| planned.effort > cost.effort);
-    changed.map(|(index, (planned, _))| (index, planned.effort)).collect()
-}
-
 /// Renders and judges one truth, with this many times the samples of the first step, or as many as it takes. The measurement before is gone on with
 /// if it has the same scene. `None` if the program was asked to end before.
 pub(super) fn judged<'a>(
@@ -244,13 +210,15 @@ pub(super) fn judged<'a>(
 ) -> Option<(Row, Cost)> {
     let start = Instant::now();
     let known = last.take().and_then(|measurement| measurement.read_for(truth));
+    let known_rays = known.as_ref().map_or(0, Measurement::rays);
     let made = known.map_or_else(|| Measurement::new(truth, args).map_err(Stop::Failed), Ok);
     let measured = made.and_then(|mut measurement| {
         let (reading, effort) = match effort {
             Some(effort) => (measurement.render_to(effort, significance, interrupt)?, effort),
             None => measured(args, &mut measurement, significance, interrupt)?,
         };
-        let cost = Cost { rays: measurement.rays(), effort, sees: None };
+        let rays = measurement.rays();
+        let cost = Cost { rays, spent: rays - known_rays, effort, sees: None };
         let (paths, cut) = (measurement.paths(), measurement.cut_paths());
         *last = Some(measurement);
         Ok((reading, paths, cut, cost))
@@ -381,17 +349,64 @@ mod tests {
         assert!(!is_worth_more(1_000, f64::INFINITY, f64::NAN, wanted));
     }
 
+    /// Arguments of a run of all truths by default.
+    fn by_default() -> VerifyArgs {
+        VerifyArgs {
+            names: Vec::new(),
+            images: None,
+            export: None,
+            suite: None,
+            page: None,
+            peer: Vec::new(),
+            json: false,
+            seed: 1,
+            thorough: false,
+            threads: Some(1),
+        }
+    }
+
     #[test]
-    fn rays_that_are_left_go_to_what_sees_the_least() {
-        let cost = |rays, sees| Cost { rays, effort: 1, sees };
-        // 30 are spent. The second is the worst by far: 4 times 10 more, then 16 times instead of 4 times, to a quarter of 8 %.
-        let costs = [cost(10, Some(0.01)), cost(10, Some(0.08)), cost(10, None)];
-        assert_eq!(finer(&costs, 30 + 39), []);
-        assert_eq!(finer(&costs, 30 + 40), [(1, 4)]);
-        assert_eq!(finer(&costs, 30 + 160), [(1, 16)]);
-        // At 1 % both are alike, and the rest goes to either as far as it lasts.
-        assert_eq!(finer(&costs, 30 + 640 + 40), [(0, 4), (1, 64)]);
-        // Fine enough.
-        assert_eq!(finer(&[cost(10, Some(1e-4))], 1000), []);
+    fn a_scene_is_rendered_once_for_all_truths_that_are_read_off_it() {
+        let all = truths();
+        let of = |name: &str| all.iter().find(|truth| truth.name == name).expect("there is such a truth");
+        let [first, second, other] =
+            ["", "-s1", "-s2"].map(|of_it| format!("slanting-light-scattered-by-spheres{of_it}")).map(|name| of(&name));
+        let args = by_default();
+        let fresh = |truth| Measurement::new(truth, &args).unwrap_or_else(|why| panic!("{why}"));
+        let read = |measurement: &mut Measurement<'_>, effort| {
+            let Ok(reading) = measurement.render_to(effort, 1e-6, &Interrupt::default()) else {
+                panic!("it was stopped")
+            };
+            (reading.estimate.mean, reading.estimate.standard_error)
+        };
+        let mut shared = fresh(first);
+        read(&mut shared, 2);
+        let rays = shared.rays();
+        let mut shared = shared.read_for(second).expect("it is the same scene");
+        assert_eq!(read(&mut shared, 2), read(&mut fresh(second), 2));
+        // No ray more, and further steps go on from there.
+        assert_eq!(shared.rays(), rays);
+        let mut shared = shared.read_for(other).expect("it is the same scene");
+        assert_eq!(read(&mut shared, 3), read(&mut fresh(other), 3));
+        assert!(shared.read_for(of("slanting-light-scattered-by-grains-s2")).is_none(), "another scene");
+        assert!(fresh(of("plate-at-45-degrees")).read_for(of("plate-at-45-degrees-polarised")).is_none());
+    }
+
+    #[test]
+    fn pixels_are_merged_as_long_as_the_first_step_takes_its_share_and_the_mean_stays() {
+        let side = |film: &str, integrator: &str| {
+            let text = format!(
+                r#"{{ "etalon": 1, "camera": {{ "type": "perspective", "position_m": [0, 0, 3], "look_at_m": [0, 0, 0], "vertical_fov_deg": 40 }},
+                "film": {{ {film} }}, "integrator": {{ {integrator} }}, "lights": [{{ "type": "environment", "radiance": 1 }}] }}"#
+            );
+            merged_side_px(&etalon_scene::parse(&text, "scene").unwrap_or_else(|error| panic!("{error:?}")).0)
+        };
+        let square = r#""width": 32, "height": 32"#;
+        // 32 / 4 = 8 pixels a side; 2 · 2 · 512 samples are the share of 32 · 64; a third divides neither side.
+        assert_eq!([8, 512, 513, 4096].map(|spp| side(square, &format!(r#""spp": {spp}"#))), [4, 2, 1, 1]);
+        assert_eq!(side(r#""width": 36, "height": 27"#, r#""spp": 8"#), 3);
+        let gaussian = r#""width": 32, "height": 32, "filter": { "type": "gaussian", "sigma_px": 0.5 }"#;
+        assert_eq!(side(gaussian, r#""spp": 8"#), 1);
+        assert_eq!(side(square, r#""spp": 8, "path_reuse": "2x2""#), 1);
     }
 }

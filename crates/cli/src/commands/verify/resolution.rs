@@ -119,3 +119,54 @@ fn percent(share: f64) -> String {
     let digits = (1.0 - percent.abs().log10().floor()).clamp(0.0, 6.0);
     format!("{percent:.*}", digits as usize)
 }
+
+#[cfg(test)]
+mod tests {
+    use etalon_oracle::statistics::Estimate;
+    use etalon_oracle::subjects::Reading;
+    use etalon_oracle::truths::truths;
+
+    use super::*;
+
+    #[test]
+    fn mistakes_count_as_seen_where_the_noise_is_small_beside_them() {
+        let all = truths();
+        let truth = all.iter().find(|truth| truth.name == "disk-lamp-behind-a-plate").expect("there is such a truth");
+        let row = |relative_error: f64| {
+            let estimate = Estimate::new(truth.value(), relative_error * truth.value());
+            Row::new(truth, Ok(Reading { estimate, nonfinite: 0, cut_bias: 0.0 }), 1e-6)
+        };
+        let of = |rows: &[Row]| Resolution::of(rows).expect("it has a relative resolution");
+        let known = truth.mistakes().len();
+        let [fine, noisy] = [1e-6, 10.0].map(|error| of(&[row(error)]));
+        assert!(known > 1 && fine.mistakes == known && fine.mistakes_seen == known && fine.mistakes_unseen.is_empty());
+        assert_eq!((noisy.mistakes_seen, noisy.mistakes_unseen.len()), (0, known));
+        let first = format!("{}: {}", truth.name, truth.mistakes()[0].what);
+        assert!(noisy.mistakes_unseen.contains(&first) && noisy.lines().join(" ").contains(&format!("; not {first}")));
+        // What is no number excludes nothing.
+        let broken = Row::new(truth, Err("why".to_owned()), 1e-6);
+        assert_eq!(of(&[row(1e-6), broken]).mistakes_seen, known);
+    }
+
+    #[test]
+    fn abilities_are_listed_with_what_half_of_their_truths_see() {
+        let all = truths();
+        let needs = |name: &str| {
+            all.iter()
+                .filter(move |truth| truth.claims.iter().any(|claim| claim.name() == name) && truth.value() != 0.0)
+        };
+        let rows: Vec<Row> = needs("masks")
+            .take(3)
+            .zip([1e-5, 1e-3, 1e-4])
+            .map(|(truth, error)| {
+                let estimate = Estimate::new(truth.value(), error * truth.value().abs());
+                Row::new(truth, Ok(Reading { estimate, nonfinite: 0, cut_bias: 0.0 }), 1e-6)
+            })
+            .collect();
+        let seen = Resolution::of(&rows).expect("they have relative resolutions");
+        let masks = seen.abilities.iter().find(|ability| ability.name == "masks").expect("they need masks");
+        let of = |row: usize| rows[row].relative_resolution().expect("it has one");
+        assert_eq!((masks.truths, masks.finest, masks.median), (3, of(0), of(2)));
+        assert_eq!([0.123, 0.0123, 2e-7].map(percent), ["12", "1.2", "0.000020"]);
+    }
+}
