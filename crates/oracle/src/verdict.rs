@@ -19,7 +19,8 @@ pub struct Verdict {
     /// Largest error allowed (deterministic) or smallest p-value accepted (statistical).
     pub threshold: f64,
     /// The smallest departure from the law that this very test would have caught, in the units of the quantity judged
-    /// (the evidence names them); for a statistical law, with the power that the evidence states.
+    /// (the evidence names them); for a statistical law, with the power that the evidence states. Infinite where nothing
+    /// was measured.
     pub resolvable_bias: f64,
     /// The worst instance, with its inputs, and how many were tried.
     pub evidence: String,
@@ -68,7 +69,7 @@ impl Verdict {
             statistic: f64::INFINITY,
             p: None,
             threshold: 0.0,
-            resolvable_bias: 0.0,
+            resolvable_bias: f64::INFINITY,
             evidence: evidence.into(),
             pass: false,
         }

@@ -124,7 +124,7 @@ fn percent(share: f64) -> String {
 mod tests {
     use etalon_oracle::statistics::Estimate;
     use etalon_oracle::subjects::Reading;
-    use etalon_oracle::truths::truths;
+    use etalon_oracle::truths::{Truth, truths};
 
     use super::*;
 
@@ -151,11 +151,11 @@ mod tests {
     #[test]
     fn abilities_are_listed_with_what_half_of_their_truths_see() {
         let all = truths();
-        let needs = |name: &str| {
-            all.iter()
-                .filter(move |truth| truth.claims.iter().any(|claim| claim.name() == name) && truth.value() != 0.0)
-        };
-        let rows: Vec<Row> = needs("masks")
+        let needs_masks = |truth: &&Truth| truth.claims.iter().any(|claim| claim.name() == "masks");
+        let rows: Vec<Row> = all
+            .iter()
+            .filter(needs_masks)
+            .filter(|truth| truth.value() != 0.0)
             .take(3)
             .zip([1e-5, 1e-3, 1e-4])
             .map(|(truth, error)| {
