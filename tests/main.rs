@@ -24,6 +24,7 @@ mod sequences;
 mod study;
 mod support;
 mod surviving;
+mod tables;
 mod usage;
 mod verify;
 mod view;

@@ -49,6 +49,8 @@ impl Ran {
 pub(crate) fn command<S: AsRef<OsStr>>(arguments: impl IntoIterator<Item = S>) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_etalon"));
     command.args(arguments).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).env("NO_COLOR", "1");
+    // Each test makes its own tables, and leaves none.
+    command.env("ETALON_TABLES", "");
     // What a test wrongly lets be written lands among the build's files.
     command.current_dir(env!("CARGO_TARGET_TMPDIR"));
     command

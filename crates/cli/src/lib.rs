@@ -25,6 +25,7 @@ mod replay_text;
 mod scene_report;
 mod shell;
 mod state;
+mod tables;
 mod write_outputs;
 
 use std::ffi::OsString;
@@ -49,8 +50,11 @@ Exit status:
   143  ended by SIGTERM
 
 Environment:
-  ETALON_SIMD  Instruction set: baseline, avx2 or avx512. It does not change a picture.
-               Default: the widest that the processor has";
+  ETALON_SIMD    Instruction set: baseline, avx2 or avx512. It does not change a picture.
+                 Default: the widest that the processor has
+  ETALON_TABLES  Folder that keeps tables of rough surfaces for later runs. They do not change a
+                 picture. If it is empty, none are kept. Default: etalon/tables in the user's folder
+                 of cached files";
 
 /// A physically based spectral path tracer with a test oracle.
 #[derive(Parser)]
@@ -96,6 +100,9 @@ pub fn run(words: impl IntoIterator<Item = OsString>, program: Option<PathBuf>) 
     // Where nothing is rendered too: a wrong value is never passed over.
     if let Err(error) = etalon_simd::Level::chosen() {
         return Failure::input(miette::miette!("{error}")).report();
+    }
+    if let Err(failure) = tables::keep_tables() {
+        return failure.report();
     }
     let outcome: Outcome = match cli.command {
         Command::Render(args) => commands::render::run(*args),

@@ -7,12 +7,11 @@
 //! return is what the table's interpolation misses, which a test bounds.
 
 use super::microfacet::Distribution;
+use super::table_store::{SharedTables, Table, Tabulated};
 use etalon_optics::{Real, Vec3};
-use etalon_scene::{FacetDistribution, FacetMasking};
 use rayon::prelude::*;
-use std::collections::HashMap;
 use std::f64::consts::{FRAC_1_PI, FRAC_PI_2};
-use std::sync::{Arc, LazyLock, Mutex, PoisonError};
+use std::sync::Arc;
 
 /// Nodes in µ, at (i/(NODES−1))²: dense towards grazing, where the loss changes fastest.
 pub(super) const NODES: usize = 81;
@@ -105,53 +104,6 @@ impl Azimuths {
             weights[index + 1] += share / f64::from(STEPS);
         }
         weights
-    }
-}
-
-/// What a table of facets is of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(crate) enum Tabulated {
-    /// What facets that reflect everything lose.
-    Mirrors,
-    /// What facets of a coat let in.
-    Coat,
-    /// The same, of a coat that loses what facets hide.
-    LossyCoat,
-    /// What such a coat reflects from below.
-    UnderCoat,
-    /// What facets between two media lose of light from before them.
-    Outside,
-    /// What they lose of light from behind them.
-    Inside,
-}
-
-/// Facets and a range of relative indices: all that a table is a function of.
-type Key = (Tabulated, (FacetDistribution, FacetMasking), [u64; 2], [u64; 2]);
-
-/// Tables of one sort, each made once: images of roughness ask for many, the materials of a scene for the same ones, and so does the same
-/// scene when it is prepared anew.
-pub(crate) struct SharedTables<T>(LazyLock<Mutex<HashMap<Key, Arc<T>>>>);
-
-impl<T> SharedTables<T> {
-    pub(crate) const fn new() -> Self {
-        Self(LazyLock::new(Mutex::default))
-    }
-
-    pub(crate) fn get(
-        &self,
-        of: Tabulated,
-        distribution: &Distribution,
-        eta: [f64; 2],
-        make: impl FnOnce() -> T,
-    ) -> Arc<T> {
-        let key = (of, distribution.kind(), distribution.alpha().map(f64::to_bits), eta.map(f64::to_bits));
-        let known = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(table) = known().get(&key) {
-            return Arc::clone(table);
-        }
-        // Not under the lock: making it hands work to threads that may ask for another.
-        let table = Arc::new(make());
-        Arc::clone(known().entry(key).or_insert(table))
     }
 }
 
@@ -335,6 +287,33 @@ impl LossTable {
         let first = value(&self.rows[index]);
         if share == 0.0 { first } else { first + share * (value(&self.rows[index + 1]) - first) }
     }
+}
+
+impl Table for LossTable {
+    const SORT: &'static str = "losses";
+
+    fn to_numbers(&self) -> Vec<f64> {
+        let of_row = |row: &Row| [&[row.average], row.loss.as_flattened()].concat();
+        [&[self.eta, self.step], &self.cdf[..], &self.rows.iter().flat_map(of_row).collect::<Vec<f64>>()].concat()
+    }
+
+    fn from_numbers(numbers: &[f64], distribution: &Distribution) -> Option<Self> {
+        let azimuths = Azimuths::of(distribution);
+        let (&[eta, step], numbers) = numbers.split_first_chunk()?;
+        let (&cdf, numbers) = numbers.split_first_chunk()?;
+        let rows = numbers.chunks(1 + azimuths.count() * NODES).map(|row| {
+            let (&average, row) = row.split_first()?;
+            Some(Row { loss: all_turns(row, azimuths)?, average })
+        });
+        let rows: Vec<Row> = rows.collect::<Option<_>>()?;
+        (!rows.is_empty()).then_some(Self { eta, step, azimuths, rows, cdf })
+    }
+}
+
+/// A row of a table: the values of each azimuth, one after the other. `None` if there are more or fewer.
+pub(super) fn all_turns<T: Copy>(values: &[T], azimuths: Azimuths) -> Option<Vec<[T; NODES]>> {
+    let (turns, rest) = values.as_chunks();
+    (rest.is_empty() && turns.len() == azimuths.count()).then(|| turns.to_vec())
 }
 
 /// The least and the greatest of a positive, smooth function of the wavelength within `range_nm`, at 65 places: the relative indices that a

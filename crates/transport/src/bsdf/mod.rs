@@ -30,6 +30,7 @@ mod rough_boundary;
 mod rough_conductor;
 mod rough_dielectric;
 mod shading;
+mod table_store;
 #[cfg(test)]
 mod tests;
 mod thin_dielectric;
@@ -57,6 +58,7 @@ pub use properties::Properties;
 pub use rough_conductor::RoughConductor;
 pub use rough_dielectric::RoughDielectric;
 pub use shading::Shading;
+pub use table_store::keep_tables;
 pub use thin_dielectric::ThinDielectric;
 pub use tinted::Tinted;
 pub use translucent::Translucent;

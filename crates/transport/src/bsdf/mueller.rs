@@ -16,8 +16,9 @@
 //! Around a shading normal ([`Shading`]) the matrix is that of the directions as the BSDF takes them, in the frame of the real
 //! ones: polarisation follows the shading, and stays physical.
 
-use super::albedo::{Azimuths, NODES, SharedTables, Tabulated, node};
+use super::albedo::{Azimuths, NODES, all_turns, node};
 use super::microfacet::{Distribution, Facet, mean_over_facets};
+use super::table_store::{SharedTables, Table, Tabulated};
 use super::{Bsdf, Shading, shading};
 use crate::polarisation::across;
 use crate::polarisation::mueller::{self, DEPOLARISER, IDENTITY, Matrix, Mueller};
@@ -229,6 +230,25 @@ impl PolarisedLoss {
             }
             rows => along(&rows[0]),
         }
+    }
+}
+
+impl Table for PolarisedLoss {
+    const SORT: &'static str = "polarised-losses";
+
+    fn to_numbers(&self) -> Vec<f64> {
+        let rows = self.rows.iter().flat_map(|row| row.as_flattened().as_flattened());
+        [self.eta, self.step].into_iter().chain(rows.copied()).collect()
+    }
+
+    fn from_numbers(numbers: &[f64], distribution: &Distribution) -> Option<Self> {
+        let azimuths = Azimuths::of(distribution);
+        let (&[eta, step], numbers) = numbers.split_first_chunk()?;
+        let (pairs, []) = numbers.as_chunks() else { return None };
+        let rows: Vec<_> =
+            pairs.chunks(azimuths.count() * NODES).map(|row| all_turns(row, azimuths)).collect::<Option<_>>()?;
+        // One row of a single index, or two.
+        (1..=2).contains(&rows.len()).then_some(Self { eta, step, azimuths, rows })
     }
 }
 

@@ -11,10 +11,11 @@
 //!
 //! A tint multiplies what the coat reflects, f_coat, and nothing else.
 
-use super::albedo::{self, Azimuths, LossTable, Tabulated};
+use super::albedo::{self, Azimuths, LossTable};
 use super::glass_losses::{let_by, mean_transmittance};
 use super::microfacet::{Distribution, Facet, Facing, MEAN_ERROR, mean_over_facets};
 use super::mueller::{Lobe, PolarisedLoss};
+use super::table_store::Tabulated;
 use super::{BsdfSample, Properties, Shading};
 use crate::mis::Density;
 use crate::polarisation::mueller::{self, Matrix};

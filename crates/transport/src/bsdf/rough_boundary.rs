@@ -1,10 +1,11 @@
 //! The rough boundary of two media at each wavelength: indices on either side, and what its facets lose and give back as diffuse light. See
 //! [`RoughDielectric`](super::RoughDielectric) for the formulas.
 
-use super::albedo::{self, LossTable, Tabulated};
+use super::albedo::{self, LossTable};
 use super::glass_losses::{glass_table, mean_transmittance, polarised_loss};
 use super::microfacet::Distribution;
 use super::mueller::PolarisedLoss;
+use super::table_store::Tabulated;
 use crate::spectral::PathSpectrum;
 use etalon_optics::{RefractiveIndex, Vec3};
 use std::sync::Arc;

@@ -4,10 +4,11 @@
 //! F_ms = F_avg² E_avg/(1 − F_avg(1 − E_avg)): Kulla & Conty 2017, with the colour of the series of bounces, the first of
 //! which cannot escape. E is the albedo of the same facets if they reflected everything.
 
-use super::albedo::{self, Azimuths, LossTable, Tabulated};
+use super::albedo::{self, Azimuths, LossTable};
 use super::film::PathFilm;
 use super::metal::{OfMetal, PathMetal};
 use super::microfacet::{Distribution, MEAN_ERROR, gauss_rule, mean_over_facets};
+use super::table_store::Tabulated;
 use super::{BsdfSample, Properties, Shading};
 use crate::polarisation::mueller::{self, Matrix};
 use etalon_optics::fresnel::Amplitudes;

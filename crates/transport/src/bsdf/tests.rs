@@ -17,6 +17,7 @@ use std::f64::consts::{PI, TAU};
 
 mod anisotropic;
 mod beckmann;
+mod stored;
 mod viewers;
 
 const RANGE_NM: [f64; 2] = [380.0, 780.0];
