@@ -139,6 +139,7 @@ CASES = [
     *(of("filter", filter=f) for f in ("tent", "gaussian")),
     of("nested-integrator"),
     of("fog", integrator="volpath", depth=32),
+    of("hollow", integrator="volpath", depth=32),
     # Shadow rays do not reach into glass: under the sky alone there is little noise.
     of("milk", integrator="volpath", depth=32, lamp=0.01, sky=1),
     of("cloud", integrator="volpath", depth=32),

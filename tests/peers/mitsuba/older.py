@@ -19,10 +19,12 @@ def load(mi, scene, given, folder):
         refusal = None
     except Exception as error:  # whatever Mitsuba throws
         refusal = error
-    mi.file_resolver().prepend(str(scene.parent))
     config = mi.parser.ParserConfig(mi.variant())
     config.unused_properties = config.unused_parameters = mi.LogLevel.Debug
     copy = folder / f"{scene.stem}-for-mitsuba.xml"
+    resolver = mi.file_resolver()
+    # Files beside the scene, and beside no other.
+    resolver.prepend(str(scene.parent))
     for file in (copy,) if is_old else (scene, copy):
         try:
             if file is copy:
@@ -30,9 +32,11 @@ def load(mi, scene, given, folder):
             state = mi.parser.parse_file(config, str(file), **given)
             mi.parser.transform_all(config, state)
             loaded = mi.parser.instantiate(config, state)
+            del resolver[0]
             return loaded[0] if isinstance(loaded, (list, tuple)) else loaded
         except Exception as error:
             refusal = error
+    del resolver[0]
     raise refusal
 
 
@@ -47,7 +51,8 @@ def edited(text):
             elif child.tag == "integrator" and kind not in INTEGRATORS:
                 depth = next((of.get("value") for of in child if of.get("name") in ("maxDepth", "max_depth")), "-1")
                 child.clear()
-                child.set("type", "path")
+                # "path" goes through media as if they were not there.
+                child.set("type", "path" if root.find(".//medium") is None else "volpath")
                 ET.SubElement(child, "integer", name="max_depth", value=depth)
             elif child.tag == "sampler" and kind not in SAMPLERS:
                 child.set("type", "independent")

@@ -4,8 +4,8 @@
     pip install mitsuba==3.9.1 OpenEXR numpy
     python3 tests/peers/mitsuba/published.py FOLDER [--etalon target/release/etalon] [--out OUT] [WORD ...]
 
-Each file .xml that no other includes is a scene; with words, only those whose path has one of them. Files that Mitsuba cannot load are left out; of those of version
-0.x it gets a copy without what it does not know (`older.py`).
+Each file .xml that no other includes is a scene; with words, only those whose path has one of them. Files that Mitsuba cannot render are left out, with its words; of those of
+version 0.x it gets a copy without what it does not know (`older.py`). Pictures that are black in both programs are counted apart.
 Pictures are small (`--width`). Mitsuba renders each scene in its spectral and in its RGB variant, or, where
 something polarises, in its polarised one. Two pictures agree if for one of the variants
 
@@ -137,11 +137,12 @@ def judge(ours, passes):
     agree = close and sharp and (all(z2[side] < most for side, most in MOST_SQUARES.items()) or beyond <= SMALL)
     ratios = [round(1 + off / mean, 4) if mean else None for off, _, mean in means]
     errors = [round(error / abs(mean), 4) if mean else None for _, error, mean in means]
-    return {"agree": bool(agree), "means": ratios, "errors": errors, "beyond": round(float(beyond), 4), "z2": z2}
+    black = not any(mean or off for off, _, mean in means)
+    return {"agree": bool(agree and not black), "black": black, "means": ratios, "errors": errors, "beyond": round(float(beyond), 4), "z2": z2}
 
 
 def compared(mi, scene, stem, args):
-    """What came of one scene; None if Mitsuba cannot load it."""
+    """What came of one scene; without "etalon" if Mitsuba cannot render it."""
     result = {}
     ours = args.out / f"{stem}.exr"
     text = scene.read_text(errors="replace")
@@ -174,7 +175,7 @@ def compared(mi, scene, stem, args):
         variant = POLARISED if is_polarised else VARIANTS[0]
         mi.set_variant(variant)
         result[FINE_SKY] = judge(channels(ours)[0], by_mitsuba(mi, scene, given, args, texels))
-    return result if "etalon" in result else None
+    return result
 
 
 def main():
@@ -202,23 +203,30 @@ def main():
             results[name] = compared(mi, scene, name.replace("/", "-").removesuffix(".xml"), args)
             kept.write_text(json.dumps(results, indent=1))
         result = results[name]
-        if result is None:
-            print(f"{name}: not loaded by Mitsuba", flush=True)
+        if "etalon" not in result:
+            print(f"{name}: not rendered by Mitsuba: {' '.join(set(result.values()))}", flush=True)
         elif "refused" in result:
             print(f"{name}: REFUSED {' '.join(result['refused'])[:300]}", flush=True)
         else:
             found = {variant: of for variant, of in result.items() if variant != "etalon"}
             print(f"{name}: {told(result)} {found} {result['etalon']}", flush=True)
-    loaded = [result for result in results.values() if result]
+    rendered = [result for result in results.values() if "etalon" in result]
+    loaded = [result for result in rendered if not is_black(result)]
     agree, fine = sum(map(agrees, loaded)), sum(FINE_SKY in result and result[FINE_SKY]["agree"] for result in loaded)
     share = 100 / max(len(loaded), 1)
-    print(f"{len(loaded)} scenes, {sum('refused' not in r for r in loaded)} load, {agree} agree ({share * agree:.0f} %); with a fine sky {agree + fine} ({share * (agree + fine):.0f} %)")
+    print(f"{len(rendered) - len(loaded)} are black in both; {len(loaded)} scenes, {sum('refused' not in r for r in loaded)} load, {agree} agree ({share * agree:.0f} %); with a fine sky {agree + fine} ({share * (agree + fine):.0f} %)")
 
 
 def told(result):
+    if is_black(result):
+        return "black in both"
     if agrees(result):
         return "agree"
     return f"agree {FINE_SKY}" if FINE_SKY in result and result[FINE_SKY]["agree"] else "DIFFER"
+
+
+def is_black(result):
+    return any(isinstance(of, dict) and of["black"] for of in result.values())
 
 
 def agrees(result):

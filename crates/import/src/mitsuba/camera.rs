@@ -11,15 +11,17 @@ use super::element::{Element, numbers};
 const DIAGONAL_35_MM: f64 = 43.266_615_305_567_87;
 
 impl<'a> Walk<'a, '_, '_> {
-    pub(super) fn integrator(&mut self, element: &Element) -> Result<(), String> {
+    pub(super) fn integrator(&mut self, element: &'a Element) -> Result<(), String> {
         self.within(element, |walk| walk.read_integrator(element))
     }
 
-    fn read_integrator(&mut self, element: &Element) -> Result<(), String> {
+    fn read_integrator(&mut self, element: &'a Element) -> Result<(), String> {
         let plugin = element.plugin();
         match plugin {
-            "path" | "volpath" | "volpathmis" | "prbvolpath" | "prb" => {}
+            "path" | "prb" => self.ignores_media = Some(plugin),
+            "volpath" | "volpathmis" | "prbvolpath" => {}
             "direct" => {
+                self.ignores_media = Some(plugin);
                 self.builder.integrator.insert("max_depth".to_owned(), json!(2));
             }
             "stokes" | "aov" | "moment" => {
@@ -51,6 +53,9 @@ impl<'a> Walk<'a, '_, '_> {
             && self.builder.integrator.get("max_depth").and_then(serde_json::Value::as_f64).is_some_and(|d| from > d)
         {
             self.builder.integrator.insert("roulette".to_owned(), json!(false));
+        }
+        if element.flag("hide_emitters")?.unwrap_or(false) {
+            self.builder.leave_out(&element.place, "hide_emitters is ignored: the camera sees lamps and skies");
         }
         element.list_unused(self.builder);
         Ok(())

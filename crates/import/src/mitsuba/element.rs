@@ -201,7 +201,7 @@ impl<'a> Ids<'a> {
 }
 
 /// Reads a file into a tree, with values of some of its parameters.
-pub(super) fn read(bytes: &[u8], given: &[(String, String)], builder: &Builder<'_>) -> Result<Element, String> {
+pub(super) fn read(bytes: &[u8], given: &[(String, String)], builder: &Builder<'_>) -> Result<(Element, bool), String> {
     let mut reading = Reading {
         near: builder.near,
         folders: builder.folders,
@@ -210,13 +210,14 @@ pub(super) fn read(bytes: &[u8], given: &[(String, String)], builder: &Builder<'
         count: 0,
         includes: 0,
         substituted: 0,
+        goes_on: false,
     };
     let mut root = reading.file(bytes, None, 0)?;
     if let Some((name, _)) = given.iter().find(|(name, _)| !reading.asked_for.contains(name)) {
         return Err(format!("the parameter \"{name}\" is given, but nothing in the scene asks for it"));
     }
     match root.len() {
-        1 => Ok(root.remove(0)),
+        1 => Ok((root.remove(0), reading.goes_on)),
         _ => Err("it has no <scene>".to_owned()),
     }
 }
@@ -233,14 +234,25 @@ struct Reading<'a> {
     includes: usize,
     /// Bytes that parameters have been replaced by.
     substituted: usize,
+    /// Whether something follows the end of a scene.
+    goes_on: bool,
 }
 
 impl Reading<'_> {
     fn file(&mut self, bytes: &[u8], name: Option<&str>, depth: usize) -> Result<Vec<Element>, String> {
         let of = name.map_or_else(String::new, |name| format!("{name}, "));
         let text = std::str::from_utf8(bytes).map_err(|_| format!("{of}it is not UTF-8"))?;
-        let options = ParsingOptions { nodes_limit: 2 * MAX_ELEMENTS as u32, ..ParsingOptions::default() };
-        let document = Document::parse_with_options(text, options).map_err(|error| format!("{of}{error}"))?;
+        let parse = |text| {
+            let options = ParsingOptions { nodes_limit: 2 * MAX_ELEMENTS as u32, ..ParsingOptions::default() };
+            Document::parse_with_options(text, options)
+        };
+        let document = parse(text).or_else(|error| {
+            // Mitsuba reads one element, whatever follows it.
+            let end = text.find("</scene>").map(|start| start + "</scene>".len());
+            let alone = end.and_then(|end| parse(&text[..end]).ok());
+            self.goes_on |= alone.is_some();
+            alone.ok_or_else(|| format!("{of}{error}"))
+        })?;
         let lines = Lines::new(text);
         let mut read = self.element(document.root_element(), &of, &lines, depth)?;
         let is_old = |root: &&mut Element| root.attribute("version").is_some_and(|version| version.starts_with("0."));

@@ -61,13 +61,13 @@ impl Walk<'_, '_, '_> {
         Ok(())
     }
 
-    /// The emission of a shape's own `area` emitter.
+    /// The emission of a shape's own emitter, if that is its surface.
     pub(super) fn emission(&mut self, shape: &Element) -> Result<Option<Value>, String> {
         let emitters = shape.nested("emitter", self.ids)?;
         let Some(emitter) = emitters.first() else { return Ok(None) };
         if emitter.plugin() != "area" {
-            let what = format!("the emitter \"{}\" of a shape is not known, and is left out", emitter.plugin());
-            self.builder.leave_out(&emitter.place, what);
+            // It shines as if it stood beside the shape.
+            self.emitter(emitter)?;
             return Ok(None);
         }
         let one = json!({ "type": "illuminant", "name": "D65", "scale": 1 });

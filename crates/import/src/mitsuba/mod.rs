@@ -28,7 +28,10 @@ use material::Look;
 use varying::Choices;
 
 pub(super) fn import(bytes: &[u8], parameters: &[(String, String)], builder: &mut Builder<'_>) -> Result<(), String> {
-    let root = element::read(bytes, parameters, builder)?;
+    let (root, goes_on) = element::read(bytes, parameters, builder)?;
+    if goes_on {
+        builder.leave_out(&root.place, "what follows </scene> is left out, as in Mitsuba");
+    }
     if root.tag != "scene" {
         return Err(format!("{}: <{}> is not a Mitsuba scene", root.place, root.tag));
     }
@@ -45,6 +48,9 @@ pub(super) fn import(bytes: &[u8], parameters: &[(String, String)], builder: &mu
         meshes: HashMap::new(),
         measured: HashMap::new(),
         choices: Choices::default(),
+        ignores_media: None,
+        interiors: HashMap::new(),
+        nested: false,
         has_panes: false,
         limit_without_panes: false,
         open: Vec::new(),
@@ -67,6 +73,12 @@ struct Walk<'a, 'w, 'b> {
     measured: HashMap<String, serde_json::Value>,
     /// What has been chosen of the material that is being read.
     choices: Choices,
+    /// The integrator, if it goes through media as if they were not there.
+    ignores_media: Option<&'a str>,
+    /// Media that fill shapes, each with the medium outside of such a shape, if that is stated.
+    interiors: HashMap<*const Element, Option<*const Element>>,
+    /// Whether a shape says that what is outside of it fills another.
+    nested: bool,
     /// Whether a pane of glass without thickness, or a polarising sheet, was read.
     has_panes: bool,
     /// Whether there is a `max_depth` that does not count the ways through panes.
@@ -101,10 +113,16 @@ impl<'a> Walk<'a, '_, '_> {
     }
 
     fn scene(&mut self, root: &'a Element) -> Result<(), String> {
+        // What an integrator ignores, and what fills bodies, decides what other elements mean.
+        for child in root.children.iter().filter(|child| child.tag == "integrator") {
+            self.integrator(child)?;
+            child.mark();
+        }
+        self.find_interiors(root);
+        self.nested = self.holds_nested(root);
         // Materials that shapes refer to are read where they are first used, so that the unused ones are named as such.
         for child in &root.children {
             match child.tag.as_str() {
-                "integrator" => self.integrator(child)?,
                 "sensor" => self.sensor(child)?,
                 // That of shapes, which refer to it.
                 "emitter" if child.plugin() == "area" && child.attribute("id").is_some() => {}
