@@ -66,6 +66,11 @@ pub(crate) fn clamp(colours: &mut [[f32; 3]]) -> bool {
 
 /// A mesh whose triangles share no vertices, each with the colour of its face.
 pub(crate) fn of_faces(mesh: &Mesh, colours: &[[f32; 3]]) -> Mesh {
+    Mesh { colours: colours.iter().flat_map(|colour| [*colour; 3]).collect(), ..apart(mesh) }
+}
+
+/// A mesh whose triangles share no vertices.
+pub(crate) fn apart(mesh: &Mesh) -> Mesh {
     fn corners<T: Copy>(mesh: &Mesh, list: &[T]) -> Vec<T> {
         if list.is_empty() {
             return Vec::new();
@@ -76,7 +81,7 @@ pub(crate) fn of_faces(mesh: &Mesh, colours: &[[f32; 3]]) -> Mesh {
         vertices: corners(mesh, &mesh.vertices),
         normals: corners(mesh, &mesh.normals),
         uvs: corners(mesh, &mesh.uvs),
-        colours: colours.iter().flat_map(|colour| [*colour; 3]).collect(),
+        colours: corners(mesh, &mesh.colours),
         triangles: (0..mesh.triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect(),
     }
 }

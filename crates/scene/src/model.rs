@@ -96,7 +96,8 @@ impl Scene {
         let width = u32::try_from(receivers.len()).ok().filter(|&width| width > 0)?;
         let [first, last] = self.integrator.wavelength_range_nm;
         let all = Bands { first_nm: 0.5 * (first + last), step_nm: last - first, count: 1 };
-        let film = Film { width, height: rows, filter: Filter::Box, stokes: false, bands: Some(all) };
+        let film =
+            Film { width, height: rows, filter: Filter::Box, sample_border: true, stokes: false, bands: Some(all) };
         let integrator = Integrator { replicates: 1, path_reuse: PathReuse::None, ..self.integrator.clone() };
         Some(Self { film, integrator, receivers, ..self.clone() })
     }

@@ -141,7 +141,8 @@ impl<'a> Walk<'a, '_, '_> {
     fn film(&mut self, sensor: &Element) -> Result<f64, String> {
         let films = sensor.nested("film", self.ids)?;
         let Some(film) = films.first() else {
-            self.builder.film = json!({ "width": 768, "height": 576, "filter": { "type": "gaussian" } });
+            self.builder.film =
+                json!({ "width": 768, "height": 576, "filter": { "type": "gaussian" }, "sample_border": false });
             return Ok(768.0 / 576.0);
         };
         let size = |name: &str, default: f64| Ok::<f64, String>(film.number(name)?.unwrap_or(default).max(1.0).round());
@@ -170,11 +171,16 @@ impl<'a> Walk<'a, '_, '_> {
             self.builder.leave_out(&film.place, what);
         }
         // How the file is written is the command's choice.
-        for harmless in ["file_format", "pixel_format", "component_format", "banner", "sample_border"] {
+        for harmless in ["file_format", "pixel_format", "component_format", "banner"] {
             film.property(harmless);
         }
+        let has_border = film.flag("sample_border")?.unwrap_or(false);
         film.list_unused(self.builder);
         self.builder.film = json!({ "width": width as u64, "height": height as u64, "filter": filter });
+        // The filter of a box does not reach beyond its pixel.
+        if !has_border && filter["type"] != "box" {
+            self.builder.film["sample_border"] = json!(false);
+        }
         Ok(width / height)
     }
 

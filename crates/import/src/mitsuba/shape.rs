@@ -16,8 +16,11 @@ use crate::Placed;
 use crate::medium::fill;
 use crate::number::{WITHOUT_DIRECTIONS, has_image, has_measured_grain, without_directions};
 use crate::relief::without_map;
-use crate::vertex_colours::{self, attribute_of};
+use crate::vertex_colours::{self, apart, attribute_of};
 use crate::winding::turn_to_normals;
+
+/// Coordinates of the corners of each triangle of a mesh that has none, as in Mitsuba.
+const CORNERS: [[f32; 2]; 3] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
 
 /// A mesh file, as files of the scene.
 #[derive(Debug)]
@@ -231,7 +234,11 @@ impl<'a> Walk<'a, '_, '_> {
         let flip_v = element.flag("flip_tex_coords")?.unwrap_or(format == MeshFormat::Obj);
         let attribute = attribute_of(&dressed.look.material);
         let flat = element.flag("face_normals")?.unwrap_or(false);
-        let mesh = self.read_mesh(&file, (format, flip_v, flat, attribute.as_ref()), place)?;
+        let own = dressed.look.material.as_str().and_then(|name| self.builder.materials.get(name));
+        let shows_image = has_image(own.unwrap_or(&dressed.look.material))
+            || dressed.look.detail.contains_key("opacity_image")
+            || dressed.emission.as_ref().is_some_and(has_image);
+        let mesh = self.read_mesh(&file, (format, flip_v, flat, attribute.as_ref(), shows_image), place)?;
         let flat = mesh.flat;
         for part in &mesh.parts {
             let mut dressed = dressed.clone();
@@ -243,11 +250,8 @@ impl<'a> Walk<'a, '_, '_> {
                 dressed.flipped = !dressed.flipped;
             }
             self.resolve(&mut dressed, attribute.as_ref().filter(|_| part.has_colours), place);
-            self.without_images(&mut dressed, part.has_uvs, place);
-            if !part.has_uvs && dressed.emission.as_ref().is_some_and(has_image) {
-                let what = "it has no texture coordinates for the image of its emission: it does not emit";
-                self.builder.leave_out(place, what);
-                dressed.emission = None;
+            if !part.has_uvs {
+                self.without_directions(&mut dressed, place);
             }
             let mut shape = json!({ "type": "mesh", "file": part.file });
             if flat {
@@ -272,10 +276,10 @@ impl<'a> Walk<'a, '_, '_> {
     fn read_mesh(
         &mut self,
         file: &str,
-        (format, flip_v, mut flat, attribute): (MeshFormat, bool, bool, Option<&(String, f64)>),
+        (format, flip_v, mut flat, attribute, shows_image): (MeshFormat, bool, bool, Option<&(String, f64)>, bool),
         place: &str,
     ) -> Result<Rc<Mesh>, String> {
-        let key = format!("{flip_v} {flat} {format:?} {attribute:?} {file}");
+        let key = format!("{flip_v} {flat} {format:?} {attribute:?} {shows_image} {file}");
         if let Some(mesh) = self.meshes.get(&key) {
             return Ok(mesh.clone());
         }
@@ -296,23 +300,30 @@ impl<'a> Walk<'a, '_, '_> {
             for what in &part.left_out {
                 self.builder.leave_out(place, format!("\"{file}\": {what}"));
             }
-            if !flat {
-                turn_to_normals(&mut part.mesh);
-            }
+            let (has_uvs, has_normals) = (!part.mesh.uvs.is_empty(), !part.mesh.normals.is_empty());
             if flip_v {
                 part.mesh.uvs.iter_mut().for_each(|uv| uv[1] = 1.0 - uv[1]);
+            }
+            if !has_uvs && shows_image {
+                if !has_normals && !flat {
+                    part.mesh.normals = smooth_normals(&part.mesh);
+                }
+                part.mesh = apart(&part.mesh);
+                part.mesh.uvs = CORNERS.repeat(part.mesh.triangles.len());
+            }
+            if !flat {
+                turn_to_normals(&mut part.mesh);
             }
             let bounds = part.mesh.vertices.iter().fold(None, |bounds: Option<Reach>, v| {
                 let [low, high] = bounds.unwrap_or([*v, *v]);
                 Some([std::array::from_fn(|k| low[k].min(v[k])), std::array::from_fn(|k| high[k].max(v[k]))])
             });
-            let has_normals = !part.mesh.normals.is_empty();
             let has_colours = self.paint(&mut part, attribute, place);
             made.push(MeshPart {
                 file: self.builder.mesh_file(&part.mesh),
                 name: part.name,
                 bounds,
-                has_uvs: !part.mesh.uvs.is_empty(),
+                has_uvs,
                 has_normals,
                 has_colours,
             });
@@ -345,38 +356,21 @@ impl<'a> Walk<'a, '_, '_> {
         !part.mesh.colours.is_empty()
     }
 
-    /// Takes images away from what has no texture coordinates.
-    fn without_images(&mut self, dressed: &mut Dressed, has_uvs: bool, place: &str) {
+    /// Takes away what has directions from what has no texture coordinates of its own.
+    fn without_directions(&mut self, dressed: &mut Dressed, place: &str) {
         let own = dressed.look.material.as_str().and_then(|name| self.builder.materials.get(name));
-        if !has_uvs && has_measured_grain(own.unwrap_or(&dressed.look.material)) {
-            self.builder.approximate(
-                place,
-                "it has no texture coordinates for the grain of its measured material: it becomes grey",
-            );
+        let mut material = own.unwrap_or(&dressed.look.material).clone();
+        if has_measured_grain(&material) {
+            let what = "it has no texture coordinates for the grain of its measured material: it becomes grey";
+            self.builder.approximate(place, what);
             dressed.look.material = grey();
+        } else if without_directions(&mut material) {
+            self.builder.leave_out(place, WITHOUT_DIRECTIONS);
+            dressed.look.material = material;
         }
-        let own = dressed.look.material.as_str().and_then(|name| self.builder.materials.get(name));
-        if !has_uvs && has_image(own.unwrap_or(&dressed.look.material)) {
-            self.builder
-                .approximate(place, "it has no texture coordinates for the image of its material: it becomes grey");
-            dressed.look.material = grey();
-        }
-        if !has_uvs {
-            let own = dressed.look.material.as_str().and_then(|name| self.builder.materials.get(name));
-            let mut material = own.unwrap_or(&dressed.look.material).clone();
-            if without_directions(&mut material) {
-                self.builder.leave_out(place, WITHOUT_DIRECTIONS);
-                dressed.look.material = material;
-            }
-        }
-        if !has_uvs && without_map(&mut dressed.look.detail) {
-            self.builder
-                .leave_out(place, "it has no texture coordinates for its normal or bump map: the map is left out");
-        }
-        if !has_uvs && !dressed.look.detail.is_empty() {
-            self.builder
-                .approximate(place, "it has no texture coordinates for the image of its opacity: it becomes opaque");
-            dressed.look.detail.clear();
+        if without_map(&mut dressed.look.detail) {
+            let what = "it has no texture coordinates for its normal or bump map: the map is left out";
+            self.builder.leave_out(place, what);
         }
     }
 }

@@ -91,3 +91,35 @@ fn round_shapes_of_pbrt_keep_their_images() {
     let plain = imported("pbrt", "Scale -1 1 1\nWorldBegin\nShape \"cylinder\"\n");
     assert_eq!(object(&plain.text)["shape"]["start_m"], json!([0, 0, -1.0]));
 }
+
+/// On a mesh without texture coordinates Mitsuba puts an image into each triangle. What has directions still needs coordinates.
+#[test]
+fn images_lie_in_each_triangle_of_a_mesh_without_coordinates() {
+    let of = |bsdf: &str, more: &str| {
+        let text = format!(
+            r#"<scene version="3.0.0"><sensor type="perspective"/><shape type="ply"><string name="filename" value="bare.ply"/>{bsdf}{more}</shape></scene>"#
+        );
+        let imported = imported("xml", &text);
+        (scene(&imported), said(&imported))
+    };
+    let image = |name: &str| {
+        format!(r#"<texture type="bitmap" name="{name}"><string name="filename" value="chequers.png"/></texture>"#)
+    };
+    let diffuse = format!(r#"<bsdf type="diffuse">{}</bsdf>"#, image("reflectance"));
+    let mask = format!(r#"<bsdf type="mask">{}<bsdf type="diffuse"/></bsdf>"#, image("opacity"));
+    let lamp = format!(r#"<emitter type="area">{}</emitter>"#, image("radiance"));
+    for (bsdf, more) in [(&diffuse[..], ""), (&mask, ""), ("", &lamp)] {
+        let (scene, said) = of(bsdf, more);
+        assert_eq!(said, Vec::<String>::new());
+        let Shape::Mesh(mesh) = &scene.objects[0].shape else { panic!("{:?}", scene.objects[0].shape) };
+        assert_eq!(mesh.uvs, [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]], "{bsdf}{more}");
+        // They are made of the triangles while these share vertices.
+        assert_eq!(mesh.normals, [[0.0, 0.0, 1.0]; 3]);
+    }
+    let (scene, said) = of(
+        r#"<bsdf type="roughconductor"><float name="alpha_u" value="0.1"/><float name="alpha_v" value="0.4"/></bsdf>"#,
+        "",
+    );
+    let Shape::Mesh(mesh) = &scene.objects[0].shape else { panic!("{:?}", scene.objects[0].shape) };
+    assert!(mesh.uvs.is_empty() && said.iter().any(|what| what.contains("no texture coordinates")), "{said:?}");
+}

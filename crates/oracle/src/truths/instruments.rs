@@ -10,6 +10,7 @@ use crate::quadrature::interval;
 
 pub(super) fn truths() -> Vec<Truth> {
     let mut list = filters();
+    list.extend(edges());
     list.extend(cameras());
     list.extend(meshes());
     list
@@ -78,6 +79,58 @@ fn filters() -> Vec<Truth> {
         })
     })
     .collect()
+}
+
+/// Films whose pixels get no light from beyond them, before a lamp that begins right of the middle and goes on beyond all edges. Pixels have a side of 1 m.
+fn edges() -> Vec<Truth> {
+    let make = |name: &str, width: u32, filter: Value, edge: f64, value: f64, formula: &str| {
+        let scene = Scene::orthographic([0.0, 0.0, 2.0], [0.0; 3], 1.0)
+            .lamp(parallelogram([edge, -10.0, 0.0], [20.0, 0.0, 0.0], [0.0, 20.0, 0.0]), black(), 1.0, "front")
+            .set("film", "filter", filter)
+            .set("film", "sample_border", json!(false))
+            .film(width, 1)
+            .spp(1 << 20);
+        Truth::new(name, &scene, value, formula)
+            .because("What lies on the film of a pixel's filter is all of it. The pixel shows the share of that which lies over the lamp.")
+            .sees(0.01)
+    };
+    // The integral of a tent of radius 2 from 0 to x.
+    let tent = |x: f64| x - 0.25 * x * x;
+    // Of a Gaussian of standard deviation ½, from a to b: by quadrature, or by midpoints.
+    let density = |x: f64| (-2.0 * x * x).exp();
+    let exact = move |a: f64, b: f64| interval(density, a, b, 1e-12).value;
+    let midpoints = move |a: f64, b: f64| {
+        (0..60_000).map(|i| a + (b - a) * (f64::from(i) + 0.5) / 60_000.0).map(density).sum::<f64>() * (b - a)
+            / 60_000.0
+    };
+    // The lamp begins 0.4 m left of the middle of the right pixel, and 0.6 m right of that of the left one.
+    fn both(share: impl Fn(f64, f64) -> f64) -> f64 {
+        0.5 * (share(-0.4, 0.5) / share(-1.5, 0.5) + share(0.6, 1.5) / share(-0.5, 1.5))
+    }
+    let beyond = 0.5 * (exact(-0.4, 1.5) + exact(0.6, 1.5)) / exact(-1.5, 1.5);
+    vec![
+        make(
+            "filter-without-a-border",
+            1,
+            json!({ "type": "tent", "radius_px": 2 }),
+            0.3,
+            (tent(0.5) - tent(0.3)) / (2.0 * tent(0.5)),
+            "(T(½) − T(0.3))/2T(½) with T(x) = x − x²/4",
+        )
+        .or_else("light from beyond the film", 0.5 * (1.0_f64 - 0.15).powi(2))
+        .or_else("a box", 0.2)
+        .or_else("what lies beyond the film is black", 0.5 * (tent(0.5) - tent(0.3))),
+        make(
+            "filter-of-two-pixels-without-a-border",
+            2,
+            json!({ "type": "gaussian", "sigma_px": 0.5 }),
+            0.1,
+            both(exact),
+            "the mean of G(−0.4, ½)/G(−1½, ½) and G(0.6, 1½)/G(−½, 1½), G the integral of exp(−2x²)",
+        )
+        .confirmed("midpoints", 1e-6, move || both(midpoints))
+        .or_else("light from beyond the film", beyond),
+    ]
 }
 
 /// A square of side 0.4 m at a distance of 1 m, its corner in the middle of the picture.

@@ -110,6 +110,8 @@ crate::record! {
         height: Required<Spanned<Whole<1, MAX_SIDE>>>,
         /// Pixel filter.
         filter: Required<FilterForm> = r#"{ "type": "box" }"#,
+        /// Whether pixels at the edges get light from beyond the film. If not, the part of their filter that lies on the film is all of it.
+        sample_border: Required<bool> = "true",
         /// Whether the picture also holds S1, S2 and S3 of the light; it then calls for polarisation.
         stokes: Required<bool> = "false",
         /// Bands of wavelengths that the film keeps apart beside its colour: the centre of the first, that of the last, and the
@@ -179,7 +181,8 @@ pub(crate) fn film(
             }
         },
     };
-    Some(Film { width, height, filter: filter?, stokes: form.stokes?, bands })
+    let sample_border = form.sample_border?;
+    Some(Film { width, height, filter: filter?, sample_border, stokes: form.stokes?, bands })
 }
 
 /// The camera of a form; `film` gives the shape of the picture.

@@ -9,6 +9,8 @@ pub struct Film {
     pub height: u32,
     /// Pixel filter, sampled by importance so that every sample belongs to one pixel.
     pub filter: Filter,
+    /// Whether pixels at the edges get light from beyond the film. If not, the part of their filter that lies on the film is all of it.
+    pub sample_border: bool,
     /// Whether S₁, S₂ and S₃ are recorded beside the radiance.
     pub stokes: bool,
     /// Bands of wavelengths that the film keeps apart, beside its colour.

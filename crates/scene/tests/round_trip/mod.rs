@@ -31,7 +31,7 @@ fn camera_film_and_integrator() {
     let filter = Filter::Gaussian { sigma_px: 0.75 };
     let bands = Bands::new([400.0, 700.0, 10.0], [380.0, 780.0]).ok();
     assert!(bands.is_some());
-    assert_eq!(scene.film, Film { width: 320, height: 200, filter, stokes: true, bands });
+    assert_eq!(scene.film, Film { width: 320, height: 200, filter, sample_border: false, stokes: true, bands });
     assert_eq!(
         scene.integrator,
         Integrator {

@@ -1,6 +1,7 @@
 //! Pixel filters, sampled by importance: a sample belongs to one pixel and its weight is one (Ernst et al. 2006), so
 //! every pixel is a plain mean with an honest error.
 
+use etalon_optics::Real;
 use etalon_scene::Filter;
 
 /// Cells of the tabulated inverse distribution.
@@ -53,6 +54,38 @@ impl FilterSampler {
             at(i) + (at(i + 1) - at(i)) * ((target - cdf[i]) / (cdf[i + 1] - cdf[i])).min(1.0)
         };
         Self::Table((0..=CELLS).map(|i| invert(i as f64 / CELLS as f64)).collect())
+    }
+
+    /// The share of the offsets that are below one.
+    fn share_below(&self, offset: f64) -> f64 {
+        match self {
+            Self::Box => (offset + 0.5).clamp(0.0, 1.0),
+            Self::Table(offsets) => match offsets.partition_point(|&edge| edge <= offset) {
+                0 => 0.0,
+                above if above == offsets.len() => 1.0,
+                above => {
+                    let (low, high) = (offsets[above - 1], offsets[above]);
+                    ((above - 1) as f64 + (offset - low) / (high - low)) / CELLS as f64
+                }
+            },
+        }
+    }
+
+    /// The shares of the offsets below the first and below the last that lead to a place on a film of `size` pixels from `centre`.
+    fn on_film(&self, centre: f64, size: f64) -> [f64; 2] {
+        [self.share_below(-centre), self.share_below(size - centre)]
+    }
+
+    /// The offset in pixels for `u` in [0, 1) of a pixel with its centre there, among those that lead to a place on a film of `size` pixels.
+    pub(crate) fn offset_on_film(&self, u: f64, centre: f64, size: f64) -> f64 {
+        let [first, last] = self.on_film(centre, size);
+        self.offset((first + u * (last - first)).min(f64::ONE_MINUS_EPSILON))
+    }
+
+    /// The density with which [`FilterSampler::offset_on_film`] draws an offset to a place on the film.
+    pub(crate) fn density_on_film(&self, offset: f64, centre: f64, size: f64) -> f64 {
+        let [first, last] = self.on_film(centre, size);
+        self.density(offset) / (last - first)
     }
 
     /// The density with which offsets are drawn at one, in pixels: what light at this distance from the centre of a pixel counts there.
@@ -112,6 +145,35 @@ mod tests {
             }
             assert_eq!(sampler.density(reach * 1.001), 0.0);
         }
+    }
+
+    /// Of a pixel at the edge of a film, and of one that is all of it, by the tent's own integrals.
+    #[test]
+    fn offsets_on_a_film_stay_on_it_and_are_drawn_as_their_density_says() {
+        // ∫ of 1 − |x|/2 from 0 to x.
+        let tent = |x: f64| x - 0.25 * x * x.abs();
+        let sampler = FilterSampler::new(&Filter::Tent { radius_px: 2.0 });
+        for (centre, size) in [(0.5_f64, 1.0_f64), (0.5, 9.0), (1.5, 9.0), (8.5, 9.0), (4.5, 9.0)] {
+            let [low, high] = [(-centre).max(-2.0), (size - centre).min(2.0)];
+            let n = 10_000;
+            let drawn = |i: i32| sampler.offset_on_film((f64::from(i) + 0.5) / f64::from(n), centre, size);
+            assert!((0..n).map(drawn).all(|offset| (low - 1e-12..=high + 1e-12).contains(&offset)));
+            for place in [0.1, 0.4, 0.8] {
+                let offset = low + place * (high - low);
+                let exact = (tent(offset) - tent(low)) / (tent(high) - tent(low));
+                let share = (0..n).filter(|i| drawn(*i) < offset).count() as f64 / f64::from(n);
+                // A ten thousandth lies between two of those counted; the cells of the table change shares by less.
+                assert!((share - exact).abs() < 2e-4, "{centre} of {size}, below {offset}: {share} is not {exact}");
+                let density = (1.0 - 0.5 * offset.abs()) / (tent(high) - tent(low));
+                let found = sampler.density_on_film(offset, centre, size);
+                assert!(
+                    (found / density - 1.0).abs() < 0.01,
+                    "{centre} of {size}, at {offset}: {found} is not {density}"
+                );
+            }
+        }
+        assert!(sampler.offset_on_film(f64::ONE_MINUS_EPSILON, 4.5, 9.0) <= 2.0);
+        assert_eq!(FilterSampler::Box.offset_on_film(0.25, 0.5, 4.0), -0.25);
     }
 
     /// Second moments against the filters' own: box 1/12, tent r²/6, Gaussian cut at 3σ: σ²·0.973335…. The table's cells

@@ -130,8 +130,12 @@ impl<'a> Tracer<'a> {
     pub(crate) fn film_point(&self, x: u32, y: u32, u: [f64; 2]) -> [f64; 2] {
         let film = &self.prepared.scene.film;
         let (width, height) = (f64::from(film.width), f64::from(film.height));
-        let column = f64::from(x) + 0.5 + self.prepared.filter.offset(u[0]);
-        let row = f64::from(y) + 0.5 + self.prepared.filter.offset(u[1]);
+        let filter = &self.prepared.filter;
+        let place = |pixel: u32, size: f64, u: f64| {
+            let centre = f64::from(pixel) + 0.5;
+            centre + if film.sample_border { filter.offset(u) } else { filter.offset_on_film(u, centre, size) }
+        };
+        let (column, row) = (place(x, width, u[0]), place(y, height, u[1]));
         [2.0 * column / width - 1.0, 1.0 - 2.0 * row / height]
     }
 

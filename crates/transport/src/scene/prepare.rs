@@ -279,7 +279,7 @@ fn compound_lens(scene: &Scene) -> Result<Option<Arc<PreparedLens>>, PrepareErro
     }
     let (width, height) = (f64::from(scene.film.width), f64::from(scene.film.height));
     // Wide filters look beyond the film.
-    let beyond_px = FilterSampler::reach_px(&scene.film.filter);
+    let beyond_px = if scene.film.sample_border { FilterSampler::reach_px(&scene.film.filter) } else { 0.5 };
     let reach = [width, height].map(|pixels| 1.0 + (2.0 * beyond_px - 1.0).max(0.0) / pixels);
     let made = PreparedLens::new(lens, width / height, reach, scene.integrator.wavelength_range_nm);
     made.map(|lens| Some(Arc::new(lens))).ok_or(PrepareError::DarkLens)

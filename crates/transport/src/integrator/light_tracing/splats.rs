@@ -141,11 +141,24 @@ impl Prepared {
             let to = (place - 0.5 + reach).floor().min(f64::from(end) - 1.0);
             from as i64..to as i64 + 1
         };
+        let film = &self.scene.film;
+        let density = |place: f64, pixel: i64, size: u32| {
+            let centre = pixel as f64 + 0.5;
+            match film.sample_border {
+                true => self.filter.density(place - centre),
+                false => self.filter.density_on_film(place - centre, centre, f64::from(size)),
+            }
+        };
         let [column, row] = connection.place_px;
+        let is_on_film =
+            (0.0..=f64::from(film.width)).contains(&column) && (0.0..=f64::from(film.height)).contains(&row);
+        if !film.sample_border && !is_on_film {
+            return;
+        }
         for y in near(row, rect.y0, rect.y1) {
-            let of_row = self.filter.density(row - 0.5 - y as f64);
+            let of_row = density(row, y, film.height);
             for x in near(column, rect.x0, rect.x1) {
-                let share = of_row * self.filter.density(column - 0.5 - x as f64);
+                let share = of_row * density(column, x, film.width);
                 if share > 0.0 {
                     let pixel = (y as u32 - rect.y0) * (rect.x1 - rect.x0) + (x as u32 - rect.x0);
                     splats.push(Splat { pixel, xyz: connection.xyz.map(|v| v * share) });
