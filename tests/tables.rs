@@ -25,8 +25,11 @@ const SCENE: &str = r#"{
     "lights": [{"type": "environment", "radiance": 1}]
 }"#;
 
+/// What a render left: its status, what it said, and the bits of its channels.
+type Ran = (Option<i32>, String, Vec<(String, Vec<u32>)>);
+
 /// The status of a render whose tables are kept in `tables`, what it says, and the pixels.
-fn render(tables: &Path, more: &str, folder: &Path) -> (Option<i32>, String, Vec<(String, Vec<u32>)>) {
+fn render(tables: &Path, more: &str, folder: &Path) -> Ran {
     let (scene, output) = (folder.join("scene.json"), folder.join("out.exr"));
     fs::write(&scene, SCENE).unwrap();
     fs::remove_file(&output).ok();

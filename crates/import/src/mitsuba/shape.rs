@@ -186,6 +186,11 @@ impl<'a> Walk<'a, '_, '_> {
         }
         let own = look.material.as_str().and_then(|name| self.builder.materials.get(name));
         let mut material = own.unwrap_or(&look.material).clone();
+        if around > 0 && material["type"] == "dielectric" && matches!(element.plugin(), "obj" | "ply" | "serialized") {
+            let what =
+                "a medium is outside of it: if it is an open surface, light that goes out through it finds none here";
+            self.builder.approximate(place, what);
+        }
         // Where a shape states no medium, a path stays in the one in which it is.
         let stays = outside.is_none() && inside.is_none() && material["type"] == "dielectric";
         if stays && self.builder.medium.is_none() && !self.interiors.is_empty() && self.ignores_media.is_none() {

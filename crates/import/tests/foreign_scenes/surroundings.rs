@@ -44,6 +44,12 @@ fn what_is_outside_of_a_body_fills_the_body_around_it() {
         assert_eq!([priority(&scene, 0), priority(&scene, 1)], [Some(1), own]);
         assert_eq!(said, Vec::<String>::new());
     }
+    // A mesh may be an open surface between two media, which no body says.
+    let open = format!(
+        r#"{FOG}<shape type="obj"><string name="filename" value="a.obj"/>{GLASS}<ref name="exterior" id="haze"/></shape>"#
+    );
+    let (_, said) = with_haze("volpath", "", &open);
+    assert!(matches!(&said[..], [what] if what.contains("if it is an open surface")), "{said:?}");
     // A medium of its own, three deep, in any order.
     let smoke = |name: &str, more: &str| {
         format!(

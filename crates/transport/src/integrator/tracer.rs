@@ -131,11 +131,11 @@ impl<'a> Tracer<'a> {
         let film = &self.prepared.scene.film;
         let (width, height) = (f64::from(film.width), f64::from(film.height));
         let filter = &self.prepared.filter;
-        let place = |pixel: u32, size: f64, u: f64| {
-            let centre = f64::from(pixel) + 0.5;
+        let place = |centre: f64, size: f64, u: f64| {
             centre + if film.sample_border { filter.offset(u) } else { filter.offset_on_film(u, centre, size) }
         };
-        let (column, row) = (place(x, width, u[0]), place(y, height, u[1]));
+        let column = place(f64::from(x) + 0.5, width, u[0]);
+        let row = place(f64::from(y) + 0.5, height, u[1]);
         [2.0 * column / width - 1.0, 1.0 - 2.0 * row / height]
     }
 

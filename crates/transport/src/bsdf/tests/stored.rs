@@ -26,9 +26,9 @@ fn tables_survive_as_numbers() {
             let table = LossTable::new(azimuths, eta, MEAN_ERROR, lost);
             survives("losses", &table, &facets);
             let again = LossTable::from_numbers(&table.to_numbers(), &facets).expect("they are its own");
-            for (mu, x) in [(0.03, 0.2), (0.4, 0.7), (0.99, 0.1)] {
-                let sin = ((1.0 - mu) * (1.0 + mu) as f64).sqrt();
-                let w = Vec3::new(sin * x, sin * ((1.0 - x * x) as f64).sqrt(), mu);
+            for (mu, x) in [(0.03_f64, 0.2_f64), (0.4, 0.7), (0.99, 0.1)] {
+                let sin = ((1.0 - mu) * (1.0 + mu)).sqrt();
+                let w = Vec3::new(sin * x, sin * (1.0 - x * x).sqrt(), mu);
                 let of = |table: &LossTable| [table.eval(w, 1.5), table.average(1.5), table.density(mu)];
                 assert_eq!(of(&table), of(&again), "{eta:?}, cosine {mu}");
                 assert_eq!(table.sample([mu, x]).z, again.sample([mu, x]).z);
