@@ -6,7 +6,7 @@
 use std::collections::HashMap;
 use std::fs;
 use std::hash::Hash;
-use std::io::{self, Write};
+use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, LazyLock, Mutex, OnceLock, PoisonError};
@@ -22,6 +22,8 @@ use super::microfacet::Distribution;
 const MOST_FILES: usize = 4096;
 /// Folders of other versions are removed when nothing was added to them for this long.
 const FORGOTTEN_AFTER: Duration = Duration::from_secs(30 * 24 * 3600);
+/// More bytes than any table has: facets of two widths and most indices have 143 kB.
+const MOST_BYTES: u64 = 1 << 20;
 const MAGIC: &[u8] = b"etalon table 1\n";
 /// The one of this process.
 static STORE: OnceLock<Store> = OnceLock::new();
@@ -133,7 +135,7 @@ impl Store {
     /// The table of a key, from its file if there is one. Otherwise it is made, and written.
     fn get<T: Table>(&self, key: &Key, distribution: &Distribution, make: impl FnOnce() -> T) -> T {
         let path = self.folder.join(key.file_name(T::SORT));
-        let bytes = fs::read(&path);
+        let bytes = read(&path);
         let (is_new, kept) = (bytes.is_err(), bytes.ok().and_then(|bytes| decoded(&bytes, distribution)));
         kept.unwrap_or_else(|| {
             let table = make();
@@ -160,6 +162,17 @@ fn remove_forgotten(folder: &Path, now: SystemTime) {
             let _removed = fs::remove_dir_all(entry.path());
         }
     }
+}
+
+/// What is in a file, or the beginning of one that is too long to be a table.
+fn read(path: &Path) -> io::Result<Vec<u8>> {
+    // What is no file may never end, or never begin.
+    if !fs::metadata(path)?.is_file() {
+        return Err(io::ErrorKind::InvalidInput.into());
+    }
+    let mut bytes = Vec::new();
+    fs::File::open(path)?.take(MOST_BYTES).read_to_end(&mut bytes)?;
+    Ok(bytes)
 }
 
 /// Writes a file whole or not at all.
@@ -264,6 +277,9 @@ mod tests {
         assert_eq!([made(&full, 7.0), made(&full, 8.0)], [7.0, 7.0]);
         fs::remove_file(&path).expect("it is ours");
         assert_eq!([made(&full, 9.0), made(&full, 10.0)], [9.0, 10.0]);
+        // What has more bytes than a table is none, and is not read to its end.
+        fs::File::create(&path).and_then(|file| file.set_len(1 << 32)).expect("it takes no space");
+        assert_eq!([made(&full, 11.5), made(&full, 12.5)], [11.5, 11.5]);
         // Where there can be no folder, tables are made.
         let file = folder.path().join("a file");
         fs::write(&file, b"").expect("it is new");
