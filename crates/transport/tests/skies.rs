@@ -4,7 +4,7 @@ use etalon_geometry::SurfaceId;
 use etalon_optics::{Spectrum, Vec3};
 use etalon_oracle::emits_suite;
 use etalon_oracle::subjects::{Emits, Emitted};
-use etalon_scene::{CieSky, DaylightSky};
+use etalon_scene::{CieSky, DaylightSky, LightSampling};
 use etalon_transport::light::{Light, SkyLight, SkyLook, Target};
 use etalon_transport::mis::Density;
 use etalon_transport::spectral::Colour;
@@ -24,17 +24,22 @@ fn directions() -> [Vec3<f64>; 2] {
     [Vec3::new(0.6, 0.3, 0.5).normalized(), Vec3::new(0.2, -0.3, 1.0).normalized()]
 }
 
+/// A standard sky that shadow rays alone find.
 fn standard(number: u8, ground: f64, irradiance: fn([f64; 3]) -> Option<f64>) -> Sky {
+    Sky { irradiance, ..standard_for(LightSampling::Light, number, ground) }
+}
+
+fn standard_for(sampling: LightSampling, number: u8, ground: f64) -> Sky {
     let [sun, up] = directions().map(|direction| direction.to_array());
     let sky = CieSky { number, up, sun, zenith: Spectrum::ONE, ground };
-    Sky { light: Arc::new(SkyLight::new(&sky, RANGE_NM)), irradiance }
+    Sky { light: Arc::new(SkyLight::new(&sky, RANGE_NM, sampling)), irradiance: |_| None }
 }
 
 fn daylight(turbidity: f64, ground: f64) -> Sky {
     let [sun, up] = directions().map(|direction| direction.to_array());
     let mean = Spectrum::daylight([0.0; 2]).unwrap();
     let sky = DaylightSky { turbidity, up, sun, ground, mean };
-    Sky { light: Arc::new(SkyLight::daylight(&sky, RANGE_NM)), irradiance: |_| None }
+    Sky { light: Arc::new(SkyLight::daylight(&sky, RANGE_NM, LightSampling::Light)), irradiance: |_| None }
 }
 
 impl Emits for Sky {
@@ -62,6 +67,7 @@ impl Emits for Sky {
 
 // Skies with a bright ground, so that every direction that the table knows is drawn; the table has creases along its rows and columns.
 emits_suite!(clear_sky, standard(12, 0.5, |_| None), from: [[0.0; 3]], pdf_tolerance: 1e-3);
+emits_suite!(clear_sky_above_its_mean, standard_for(LightSampling::Mis, 12, 0.5), from: [[0.0; 3]], pdf_tolerance: 1e-3);
 emits_suite!(daylight_sky, daylight(3.0, 0.5), from: [[0.0; 3]], pdf_tolerance: 1e-3);
 emits_suite!(even_sky, standard(5, 1.0, |_| Some(PI)), from: [[0.0; 3]], pdf_tolerance: 1e-5);
 

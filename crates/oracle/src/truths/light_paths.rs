@@ -2,7 +2,7 @@
 
 use super::{
     Claim, Truth,
-    scene::{Scene, black, block, glass, lambert, level_square, mirror, parallelogram, shown, sphere},
+    scene::{Scene, black, block, glass, grey_hdr, lambert, level_square, mirror, parallelogram, shown, sphere},
 };
 use crate::laws::fresnel_exact;
 use crate::vector::{add, dot, normalize, scale};
@@ -22,6 +22,7 @@ pub(super) fn truths() -> Vec<Truth> {
         .map(|truth| truth.claims(Claim::SpecularConnections))
         // Without light paths, few samples find the lamp.
         .chain([by_a_mirror("always", true)])
+        .chain(WAYS.map(sky_by_a_mirror))
         .chain(
             [by_a_bent_mirror(), by_a_mirror_bent_beyond_the_sun()]
                 .map(|truth| truth.claims(Claim::SpecularConnections)),
@@ -82,6 +83,85 @@ fn by_a_mirror(way: &'static str, has_area: bool) -> Truth {
     .or_else("the mirror shows nothing", 0.0)
     .or_else("the mirror loses nothing", shown(mean))
     .or_else("light counted twice", shown(2.0 * REFLECTANCE * mean))
+    .sees(0.01)
+}
+
+/// A sky that is bright about the zenith and faint elsewhere, and its image in an upright mirror beside the floor.
+fn sky_by_a_mirror(way: &'static str) -> Truth {
+    const REFLECTANCE: f64 = 0.5;
+    const BRIGHT: f64 = 6.0;
+    // The mirror stands at x = 0.2, from the floor up to 0.6 m, and is 1.2 m wide.
+    let (place, height, wide) = (0.2, 0.6, 0.6);
+    // Between the centres of the first two rows of the image.
+    let (upper, lower) = (PI / 8.0, 3.0 * PI / 8.0);
+    let slope = (1.0 - BRIGHT) / (lower - upper);
+    let radiance = move |polar: f64| BRIGHT + slope * (polar.clamp(upper, lower) - upper);
+    // ∫ L cos θ sin θ dθ from the zenith.
+    let up_to = move |polar: f64| {
+        let of_constant = |from: f64, to: f64| 0.5 * (to.sin().powi(2) - from.sin().powi(2));
+        let of_angle = |polar: f64| (2.0 * polar).sin() / 8.0 - polar * (2.0 * polar).cos() / 4.0;
+        let [first, second] = [polar.min(upper), polar.clamp(upper, lower)];
+        BRIGHT * of_constant(0.0, first)
+            + (BRIGHT - slope * upper) * of_constant(upper, second)
+            + slope * (of_angle(second) - of_angle(upper))
+            + of_constant(lower, polar.max(lower))
+    };
+    let whole = 2.0 * PI * up_to(0.5 * PI);
+    let half = half_view();
+    let at = move |step: u32, steps: u32| half * (2.0 * (f64::from(step) + 0.5) / f64::from(steps) - 1.0);
+    // What comes from the mirror to a point, if that reflects all: over azimuths, up to its upper edge.
+    let of_mirror = move |x: f64, y: f64| {
+        let away = x - place;
+        let [from, to] = [-wide - y, wide - y].map(|side: f64| (side / away).atan());
+        let steps = 200;
+        let step = (to - from) / f64::from(steps);
+        let of = |k: i32| {
+            let edge = (away / ((from + (f64::from(k) + 0.5) * step).cos() * height)).atan();
+            up_to(0.5 * PI) - up_to(edge)
+        };
+        (0..steps).map(of).sum::<f64>() * step
+    };
+    let steps = 40;
+    let points = (0..steps).flat_map(|i| (0..steps).map(move |j| (0.5 + at(i, steps), at(j, steps))));
+    let mirrored = points.map(|(x, y)| of_mirror(x, y)).sum::<f64>() / f64::from(steps * steps);
+    let image: Vec<f64> = (0..32).map(|texel| if texel < 8 { BRIGHT } else { 1.0 }).collect();
+    let scene = floor(way)
+        .object(parallelogram([place, -wide, 0.0], [0.0, 2.0 * wide, 0.0], [0.0, 0.0, height]), mirror(REFLECTANCE))
+        .light(json!({ "type": "environment", "image": {
+            "file": "bright-above.hdr", "projection": "latitude-longitude", "up": [0, 0, 1], "forward": [1, 0, 0] } }))
+        .file("bright-above.hdr", grey_hdr(8, &image))
+        .spp(spp(way, 256, 256));
+    Truth::new(
+        format!("sky-by-a-mirror-with-light-paths-{way}"),
+        &scene,
+        shown(whole - (1.0 - REFLECTANCE) * mirrored),
+        "(ρ/π)(E − (1 − R) E′), E′ of the directions in which the mirror stands",
+    )
+    .because("The sky is the same all around. So an upright mirror shows what is behind it, times R.")
+    .confirmed("irradiance by the parts of the mirror", 2e-3, move || {
+        let (points, columns, rows) = (12, 240, 120);
+        let of = |x: f64, y: f64| {
+            let parts = (0..columns).flat_map(|i| (0..rows).map(move |j| (i, j)));
+            let parts = parts.map(|(i, j)| {
+                let across = wide * (2.0 * (f64::from(i) + 0.5) / f64::from(columns) - 1.0) - y;
+                let up = height * (f64::from(j) + 0.5) / f64::from(rows);
+                let away = x - place;
+                let r = (across * across + up * up + away * away).sqrt();
+                radiance((up / r).acos()) * up * away / r.powi(4)
+            });
+            parts.sum::<f64>() * (2.0 * wide / f64::from(columns)) * (height / f64::from(rows))
+        };
+        let places = (0..points).flat_map(|i| (0..points).map(move |j| (0.5 + at(i, points), at(j, points))));
+        let mean = places.map(|(x, y)| of(x, y)).sum::<f64>() / f64::from(points * points);
+        // The whole sky by rings.
+        let rings: f64 = (0..10_000)
+            .map(|k| (f64::from(k) + 0.5) * PI / 20_000.0)
+            .map(|polar| radiance(polar) * (2.0 * polar).sin())
+            .sum();
+        shown(rings * PI * PI / 20_000.0 - (1.0 - REFLECTANCE) * mean)
+    })
+    .or_else("the mirror shows nothing", shown(whole - mirrored))
+    .or_else("the mirror loses nothing", shown(whole))
     .sees(0.01)
 }
 

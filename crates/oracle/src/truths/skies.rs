@@ -19,6 +19,7 @@ pub(super) fn truths() -> Vec<Truth> {
     let mut list = seen();
     list.extend(on_a_plate());
     list.extend(beside_a_lamp());
+    list.extend(bright_in_grey());
     list.into_iter().map(|truth| truth.claims(Claim::PhotometricSensor)).collect()
 }
 
@@ -285,6 +286,64 @@ fn on_a_plate() -> Vec<Truth> {
             .or_else("the height taken for that of the middle of the texel", shown(BRIGHT * PI / 4.0 * 0.75))
             .sees(0.01),
         );
+    }
+    list
+}
+
+/// A light meter under a grey image of which one texel is brighter. Shadow rays may leave the grey to paths.
+fn bright_in_grey() -> Vec<Truth> {
+    const GREY: f64 = 1.0;
+    let by_rows = |bright: f64, grey: f64| grey * PI + bright * TAU / 8.0 * of_row(1.0);
+    let by_areas = |bright: f64, grey: f64| grey * PI + bright * PI / 4.0 * (1.0 - 1.0 / 6.0 - 1.0 / 8.0);
+    let by_rows_of: Look = |image, along| by_latitude(image, false, along);
+    let mut list = Vec::new();
+    for how in ["mis", "light", "bsdf"] {
+        let skies: [(&str, &str, usize, usize, f64, f64, Look); 2] = [
+            (
+                "grey-sky",
+                "latitude-longitude",
+                8,
+                8 + 3,
+                by_rows(BRIGHT, 0.0),
+                by_rows(BRIGHT - GREY, GREY),
+                by_rows_of,
+            ),
+            (
+                "grey-sky-of-equal-areas",
+                "equal-area",
+                4,
+                2 * 4 + 1,
+                by_areas(BRIGHT, 0.0),
+                by_areas(BRIGHT - GREY, GREY),
+                by_area,
+            ),
+        ];
+        for (name, projection, width, place, of_bright, value, look) in skies {
+            let mut image = vec![GREY; width * 4];
+            image[place] = BRIGHT;
+            let file = format!("{name}.hdr");
+            let scene = Scene::light_meter()
+                .light(pose_json(UPRIGHT, json!({ "file": file, "projection": projection })))
+                .file(&file, grey_hdr(width, &image))
+                .light_sampling(how)
+                .spp(4096);
+            let truth = Truth::new(
+                format!("{name}-with-one-bright-texel-by-{how}"),
+                &scene,
+                shown(value),
+                "(ρ/π)(π L + (L′ − L) E₁), E₁ of a texel of radiance 1",
+            )
+            .because("Light adds up: a grey sky, and what one texel shines with beyond that.")
+            .confirmed("quadrature over the directions above", 2e-3, move || {
+                let cone = Cone { axis: [0.0, 0.0, 1.0], one_minus_cos: 1.0 };
+                let integrand = |d: Vec3| look(&image, UPRIGHT.along(d)) * d[2].max(0.0);
+                shown(directions(integrand, cone, 1e-4, 3_000_000).value)
+            })
+            .or_else("the bright texel alone", shown(of_bright))
+            .or_else("the grey found twice", shown(value + GREY * PI))
+            .sees(0.01);
+            list.push(truth);
+        }
     }
     list
 }

@@ -1,14 +1,17 @@
 //! An image of everything around the scene: what it shows in each direction, and directions drawn by its luminance.
 
+mod above_mean;
 mod cumulative;
 mod equal_area;
 pub(super) mod meridians;
 
-use super::{LightSample, LightSource, Target};
+use super::{LightSample, LightSampling, LightSource, Target};
 use crate::mis::Density;
 use crate::spectral::{Colour, PathSpectrum};
+pub(super) use above_mean::AboveMean;
 use equal_area::EqualArea;
 use etalon_geometry::SurfaceId;
+use etalon_geometry::warp::uniform_sphere;
 use etalon_optics::Vec3;
 use etalon_scene::{EnvironmentImage, EnvironmentProjection, Image};
 use meridians::Meridians;
@@ -55,13 +58,16 @@ impl Along {
 }
 
 impl EnvironmentLight {
-    /// The light of an image, at wavelengths within `range_nm`.
-    pub fn new(image: &EnvironmentImage, range_nm: [f64; 2]) -> Self {
+    /// The light of an image, at wavelengths within `range_nm`. With [`LightSampling::Mis`] shadow rays find the parts that are brighter than
+    /// the mean, and leave the others to directions from BSDFs.
+    pub fn new(image: &EnvironmentImage, range_nm: [f64; 2], sampling: LightSampling) -> Self {
         let [forward, right, up] = [image.forward, image.right, image.up].map(Vec3::from_array);
         let map = match image.projection {
-            EnvironmentProjection::LatitudeLongitude => Map::Meridians(Meridians::new(&image.image, false)),
-            EnvironmentProjection::LatitudeLongitudeAtPoles => Map::Meridians(Meridians::new(&image.image, true)),
-            EnvironmentProjection::EqualArea => Map::EqualArea(EqualArea::new(&image.image)),
+            EnvironmentProjection::LatitudeLongitude => Map::Meridians(Meridians::new(&image.image, false, sampling)),
+            EnvironmentProjection::LatitudeLongitudeAtPoles => {
+                Map::Meridians(Meridians::new(&image.image, true, sampling))
+            }
+            EnvironmentProjection::EqualArea => Map::EqualArea(EqualArea::new(&image.image, sampling)),
         };
         Self {
             image: Arc::clone(&image.image),
@@ -78,11 +84,11 @@ impl EnvironmentLight {
         &self.white
     }
 
-    /// ∫ of the luminance over all directions, sr: what the white would have to shine with from one.
-    fn total(&self) -> f64 {
+    /// What of the luminance shadow rays are drawn by.
+    fn above(&self) -> &AboveMean {
         match &self.map {
-            Map::Meridians(map) => map.total(),
-            Map::EqualArea(map) => map.total(),
+            Map::Meridians(map) => map.above(),
+            Map::EqualArea(map) => map.above(),
         }
     }
 
@@ -147,6 +153,15 @@ impl LightSource for EnvironmentLight {
         look.sample(wi)
     }
 
+    fn sample_all(&self, _from: Vec3<f64>, u: [f64; 2], _time: f64) -> Option<LightSample> {
+        let wi = match self.above().choose_even(u[0]) {
+            (true, u0) => uniform_sphere([u0, u[1]]),
+            (false, u0) => self.sample_row([&[u0], &[u[1]]]).0[0],
+        };
+        let Look { colour, density } = self.look(wi);
+        Look { colour, density: self.above().density_of_all(density) }.sample(wi)
+    }
+
     fn density(&self, _from: Vec3<f64>, wi: Vec3<f64>, _time: f64) -> f64 {
         self.look(wi).density
     }
@@ -161,6 +176,6 @@ impl LightSource for EnvironmentLight {
     }
 
     fn power_factor(&self, scene_radius: f64) -> f64 {
-        self.total() * PI * scene_radius * scene_radius
+        self.above().whole * PI * scene_radius * scene_radius
     }
 }

@@ -40,7 +40,7 @@ use crate::mis::Density;
 use crate::spectral::{Colour, PathSpectrum};
 use etalon_geometry::SurfaceId;
 use etalon_optics::{Spectrum, Vec3};
-use etalon_scene::{EnvironmentImage, LightKind};
+use etalon_scene::{EnvironmentImage, LightKind, LightSampling};
 use std::sync::Arc;
 use tree::LightBounds;
 
@@ -113,6 +113,10 @@ impl Source {
 /// What each kind of light answers; see the methods of [`Light`].
 trait LightSource {
     fn sample(&self, from: Vec3<f64>, u: [f64; 2], time: f64) -> Option<LightSample>;
+
+    fn sample_all(&self, from: Vec3<f64>, u: [f64; 2], time: f64) -> Option<LightSample> {
+        self.sample(from, u, time)
+    }
 
     /// 0 of a light whose position or direction is a single one.
     fn density(&self, _from: Vec3<f64>, _wi: Vec3<f64>, _time: f64) -> f64 {
@@ -212,9 +216,15 @@ macro_rules! each {
 
 impl Light {
     /// Draws a direction from `from` toward the light with `u` in [0, 1)² at a time of the shutter's, from 0 to 1; `None` where
-    /// none of its light arrives.
+    /// none of its light arrives. Of a sky that is not [for shadow rays alone](EnvironmentLight::new), only what is brighter than its mean
+    /// is found.
     pub fn sample(&self, from: Vec3<f64>, u: [f64; 2], time: f64) -> Option<LightSample> {
         each!(self, light => LightSource::sample(light, from, u, time))
+    }
+
+    /// The same, but finds all light of skies as well. The density is another one than that of [`Light::density`] there.
+    pub fn sample_all(&self, from: Vec3<f64>, u: [f64; 2], time: f64) -> Option<LightSample> {
+        each!(self, light => LightSource::sample_all(light, from, u, time))
     }
 
     /// The density in sr⁻¹ with which [`Light::sample`] draws the direction `wi`, which meets the light at that time, from `from`.
@@ -281,7 +291,7 @@ impl Light {
     pub(crate) fn of_scene(
         kind: &LightKind,
         frame: &SceneFrame,
-        range_nm: [f64; 2],
+        (range_nm, sampling): ([f64; 2], LightSampling),
         known: impl Fn(&EnvironmentImage) -> Option<Arc<EnvironmentLight>>,
     ) -> (Option<Self>, Option<Environment>) {
         let spectrum = |spectrum: &Spectrum| PathSpectrum::new(spectrum, range_nm);
@@ -313,15 +323,15 @@ impl Light {
             _ if kind.is_zero() => return (None, None),
             LightKind::Luminaire { .. } => return (None, None),
             LightKind::Slide(slide) => {
-                let (lamp, _) = Self::of_scene(&slide.lamp, frame, range_nm, known);
+                let (lamp, _) = Self::of_scene(&slide.lamp, frame, (range_nm, sampling), known);
                 let light = lamp.and_then(|lamp| SlideLight::new(lamp, slide));
                 return (light.map(|light| Self::Slide(Box::new(light))), None);
             }
-            LightKind::Sky(sky) => return Self::of_sky(SkyLight::new(sky, range_nm)),
-            LightKind::Daylight(sky) => return Self::of_sky(SkyLight::daylight(sky, range_nm)),
+            LightKind::Sky(sky) => return Self::of_sky(SkyLight::new(sky, range_nm, sampling)),
+            LightKind::Daylight(sky) => return Self::of_sky(SkyLight::daylight(sky, range_nm, sampling)),
             LightKind::Environment { radiance } => return (None, Some(spectrum(radiance).into())),
             LightKind::ImageEnvironment(image) => {
-                let light = known(image).unwrap_or_else(|| Arc::new(EnvironmentLight::new(image, range_nm)));
+                let light = known(image).unwrap_or_else(|| Arc::new(EnvironmentLight::new(image, range_nm, sampling)));
                 let radiance = EnvironmentRadiance::Image(Arc::clone(&light));
                 return (Some(Self::Environment(light)), Some(Environment { radiance, light: None }));
             }

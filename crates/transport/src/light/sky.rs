@@ -1,14 +1,15 @@
 //! Skies by formula: the standard skies of the CIE and daylight. Directions are drawn by a table of the luminance.
 //!
 //! The table has a row at the zenith and one at the horizon, and is interpolated as an image of everything around is. It gives the density
-//! of directions and no light, so its coarseness costs noise alone.
+//! of directions and no light, so its coarseness costs noise alone. As of images, shadow rays aim at what is brighter than the mean.
 
 use super::environment::Along;
 use super::environment::meridians::Meridians;
-use super::{LightSample, LightSource, Target};
+use super::{LightSample, LightSampling, LightSource, Target};
 use crate::mis::Density;
 use crate::spectral::{Colour, PathSpectrum};
 use etalon_geometry::SurfaceId;
+use etalon_geometry::warp::uniform_sphere;
 use etalon_optics::{Frame, Real, Vec3};
 use etalon_scene::{CieSky, DaylightLook, DaylightPattern, DaylightSky, Image, Perez, Texels};
 use std::f64::consts::PI;
@@ -104,20 +105,20 @@ pub struct SkyLook {
 }
 
 impl SkyLight {
-    /// The light of a standard sky, at wavelengths within `range_nm`.
-    pub fn new(sky: &CieSky, range_nm: [f64; 2]) -> Self {
+    /// The light of a standard sky, at wavelengths within `range_nm`. For `sampling` see [`EnvironmentLight::new`](super::EnvironmentLight::new).
+    pub fn new(sky: &CieSky, range_nm: [f64; 2], sampling: LightSampling) -> Self {
         let up = Vec3::from_array(sky.up);
         let pattern = Pattern::Cie { up, perez: sky.perez(), ground: sky.ground };
-        Self::of_pattern(pattern, up, PathSpectrum::new(&sky.zenith, range_nm))
+        Self::of_pattern(pattern, up, PathSpectrum::new(&sky.zenith, range_nm), sampling)
     }
 
     /// The light of a sky with the colours of daylight, at wavelengths within `range_nm`.
-    pub fn daylight(sky: &DaylightSky, range_nm: [f64; 2]) -> Self {
+    pub fn daylight(sky: &DaylightSky, range_nm: [f64; 2], sampling: LightSampling) -> Self {
         let pattern = Pattern::Daylight(Box::new(sky.pattern()));
-        Self::of_pattern(pattern, Vec3::from_array(sky.up), PathSpectrum::new(&sky.mean, range_nm))
+        Self::of_pattern(pattern, Vec3::from_array(sky.up), PathSpectrum::new(&sky.mean, range_nm), sampling)
     }
 
-    fn of_pattern(pattern: Pattern, up: Vec3<f64>, spectrum: PathSpectrum) -> Self {
+    fn of_pattern(pattern: Pattern, up: Vec3<f64>, spectrum: PathSpectrum, sampling: LightSampling) -> Self {
         let axes = Frame::from_normal(up);
         let [columns, rows] = TABLE;
         let texels = (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column))).map(|(row, column)| {
@@ -133,7 +134,7 @@ impl SkyLight {
             [shown.luminance as f32; 3]
         });
         let table = Image::new(columns, rows, Texels::F32(texels.collect()));
-        let map = Meridians::new(&table, true);
+        let map = Meridians::new(&table, true, sampling);
         Self { spectrum, pattern, axes, table, map }
     }
 
@@ -145,18 +146,22 @@ impl SkyLight {
         let Shown { relative, colour, .. } = self.pattern.eval(wi);
         SkyLook { relative, colour, density: look.density }
     }
+
+    /// The direction that `u` in [0, 1)² draws.
+    fn direction(&self, u: [f64; 2]) -> Vec3<f64> {
+        let [along] = self.map.sample(&self.table, [&[u[0]], &[u[1]]]);
+        world(&self.axes, along).renormalized()
+    }
 }
 
 fn world(axes: &Frame<f64>, along: Along) -> Vec3<f64> {
     axes.n * along.up + (axes.s * along.forward + axes.t * along.right)
 }
 
-impl LightSource for SkyLight {
-    fn sample(&self, _from: Vec3<f64>, u: [f64; 2], _time: f64) -> Option<LightSample> {
-        let [along] = self.map.sample(&self.table, [&[u[0]], &[u[1]]]);
-        let wi = world(&self.axes, along).renormalized();
-        let SkyLook { relative, colour, density } = self.look(wi);
-        // The interpolated table reaches below the horizon, where there may be no light.
+impl SkyLook {
+    /// The sample of a direction in which a sky shows this. The interpolated table reaches below the horizon, where there may be no light.
+    fn sample(self, wi: Vec3<f64>) -> Option<LightSample> {
+        let Self { relative, colour, density } = self;
         (density > 0.0 && relative > 0.0).then_some(LightSample {
             colour,
             wi,
@@ -165,6 +170,22 @@ impl LightSource for SkyLight {
             surface: SurfaceId::NONE,
             scale: relative,
         })
+    }
+}
+
+impl LightSource for SkyLight {
+    fn sample(&self, _from: Vec3<f64>, u: [f64; 2], _time: f64) -> Option<LightSample> {
+        let wi = self.direction(u);
+        self.look(wi).sample(wi)
+    }
+
+    fn sample_all(&self, _from: Vec3<f64>, u: [f64; 2], _time: f64) -> Option<LightSample> {
+        let wi = match self.map.above().choose_even(u[0]) {
+            (true, u0) => uniform_sphere([u0, u[1]]),
+            (false, u0) => self.direction([u0, u[1]]),
+        };
+        let look = self.look(wi);
+        SkyLook { density: self.map.above().density_of_all(look.density), ..look }.sample(wi)
     }
 
     fn density(&self, _from: Vec3<f64>, wi: Vec3<f64>, _time: f64) -> f64 {
@@ -181,6 +202,6 @@ impl LightSource for SkyLight {
     }
 
     fn power_factor(&self, scene_radius: f64) -> f64 {
-        self.map.total() * PI * scene_radius * scene_radius
+        self.map.above().whole * PI * scene_radius * scene_radius
     }
 }

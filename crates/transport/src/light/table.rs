@@ -249,7 +249,7 @@ mod tests {
     use crate::light::{AreaLight, DirectionalLight, Emitter, EnvironmentLight, PointLight, SpotLight};
     use etalon_geometry::{Cylinder, Disk, Parallelogram, Primitive, PrimitiveId, Sphere, Triangle};
     use etalon_optics::{Spectrum, Vec3};
-    use etalon_scene::{EnvironmentImage, EnvironmentProjection, Image, Texels};
+    use etalon_scene::{EnvironmentImage, EnvironmentProjection, Image, LightSampling, Texels};
     use std::f64::consts::PI;
     use std::sync::Arc;
 
@@ -292,7 +292,7 @@ mod tests {
             Light::Point(point()),
             Light::Spot(SpotLight { point: point(), axis: Vec3::new(0.0, 0.0, 1.0), cosines: [0.8, 0.5] }),
             Light::Directional(DirectionalLight { toward: Vec3::new(0.0, 0.0, 1.0), irradiance: one() }),
-            Light::Environment(Arc::new(EnvironmentLight::new(&white_sky(), [360.0, 830.0]))),
+            Light::Environment(Arc::new(EnvironmentLight::new(&white_sky(), [360.0, 830.0], LightSampling::Mis))),
         ];
         // A spot's smooth edge lets half of the light between its cosines pass: 2π(1 − .65) of the sphere. Half a metre is 1 here.
         let of_points = [4.0 * 4.0, 2.0 * 4.0 * (1.0 - 0.65)];
@@ -334,7 +334,7 @@ mod tests {
             sun(0.5),
             area(ball(-3.0, 0.5), shines(10.0)),
             area(ball(0.0, 0.25), shines(20.0)),
-            Light::Environment(Arc::new(EnvironmentLight::new(&white_sky(), [360.0, 830.0]))),
+            Light::Environment(Arc::new(EnvironmentLight::new(&white_sky(), [360.0, 830.0], LightSampling::Mis))),
             area(ball(4.0, 1.0), shines(5.0)),
             sun(3.0),
         ];

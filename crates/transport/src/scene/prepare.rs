@@ -111,15 +111,16 @@ pub(crate) fn build(scene: &Scene, study: &Study, earlier: Option<Prepared>) -> 
     // A meter alone has no extent, and parallel light would have no power.
     let radius = if radius == 0.0 && !scene.receivers.is_empty() { 1.0 } else { radius };
 
-    if scene.integrator.light_sampling == LightSampling::Bsdf {
+    let sampling = scene.integrator.light_sampling;
+    if sampling == LightSampling::Bsdf {
         emitters.clear();
     }
     let mut environments = Vec::new();
     for light in &scene.lights {
-        let known = |image: &EnvironmentImage| earlier.as_ref()?.image_environment(image, range_nm);
-        let (target, sky) = Light::of_scene(&light.kind, &frame, range_nm, known);
+        let known = |image: &EnvironmentImage| earlier.as_ref()?.image_environment(image, &scene.integrator);
+        let (target, sky) = Light::of_scene(&light.kind, &frame, (range_nm, sampling), known);
         environments.extend(sky);
-        if light.kind.is_delta() || scene.integrator.light_sampling != LightSampling::Bsdf {
+        if light.kind.is_delta() || sampling != LightSampling::Bsdf {
             emitters.extend(target);
         }
     }
@@ -217,8 +218,7 @@ pub(crate) fn build(scene: &Scene, study: &Study, earlier: Option<Prepared>) -> 
         .filter(|connections| !connections.has_beams)
         .and_then(|_| RefractingBodies::panes(&surfaces, &geometry));
     // A study may weigh shadow rays otherwise.
-    let refracting_bodies = (plan.runs(EffectName::RefractedShadows)
-        && scene.integrator.light_sampling == LightSampling::Mis)
+    let refracting_bodies = (plan.runs(EffectName::RefractedShadows) && sampling == LightSampling::Mis)
         .then(|| RefractingBodies::new(&surfaces, &geometry));
     let wavelengths = match &scene.film.bands {
         Some(bands) => WavelengthDistribution::for_bands(range_nm, bands),

@@ -93,36 +93,37 @@ fn begin<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
     tracer: &Tracer<'a>,
     specular_objects: &SpecularObjects,
     path: &mut Path<'a, M, P, N>,
-    (number, of): (u64, u64),
+    (path_number, of): (u64, u64),
     sampler: &Sampler,
     counters: &mut Counters,
 ) -> Option<Beginning<'a, N>> {
     let world = &tracer.world;
     let [u1, u2, u_place, u_light] = sampler.set(0);
     // The paths of a sample are spread evenly over the area.
-    let u_place = (number as f64 + u_place) / of as f64;
+    let u_place = (path_number as f64 + u_place) / of as f64;
     let (surface, position) = specular_objects.point(world.geometry, u_place, [u1, u2])?;
     let hit = Hit { t: 0.0, surface, uv: world.geometry.parameters(surface, position, 0.0) };
     let point = world.geometry.surface(&Ray::free(position, Vec3::new(0.0, 0.0, 1.0)), &hit);
 
-    // As a shadow ray finds it.
+    // As a shadow ray finds it, but all of it: camera paths leave the faint parts of skies to light paths, too.
     let [_, light_1, light_2, _] = sampler.vertex_set(0, 1);
-    let draw = world.sample_light(&point, u_light, [light_1, light_2])?;
-    let has_source = world.lights.lights()[draw.light as usize].source().is_some();
-    if has_source && !specular_objects.finds_sources {
+    let (number, probability) = world.lights.choose(point.position, u_light)?;
+    let light = &world.lights.lights()[number];
+    if light.source().is_some() && !specular_objects.finds_sources {
         return None;
     }
-    let LightSample { wi: toward_lamp, density, scale, target, colour, .. } = draw.sample;
+    let sample = light.sample_all(point.position, [light_1, light_2], point.time)?;
+    let LightSample { wi: toward_lamp, density, scale, target, colour, .. } = sample;
     let mut vertex = SurfaceInteraction::new(-toward_lamp, hit, point, world.surfaces.of(&point));
-    path.visibility(world, &vertex, &draw.sample, counters)?;
+    path.visibility(world, &vertex, &sample, counters)?;
     let density = match density {
         Density::Delta => 1.0,
         Density::SolidAngle(density) => density,
     };
     let cos = point.normal.dot(toward_lamp).abs();
-    let colour = colour.or_else(|| world.colour_of_emitter(draw.light, target, point.time));
-    let white = path.spectrum_of_light(world, draw.light);
-    let power = path.coloured(white, colour) * (scale * cos * specular_objects.area() / (density * draw.probability));
+    let colour = colour.or_else(|| world.colour_of_emitter(number as u32, target, point.time));
+    let white = path.spectrum_of_light(world, number as u32);
+    let power = path.coloured(white, colour) * (scale * cos * specular_objects.area() / (density * probability));
     vertex.prepare_scattering(world);
     Some(Beginning { vertex, power })
 }

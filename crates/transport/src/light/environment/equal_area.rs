@@ -3,10 +3,12 @@
 //!
 //! Every texel is the same solid angle, 4π over their number, and shows one colour. So the density is that colour's luminance over
 //! the whole, constant in each texel: a texel is chosen by its luminance and a place in it evenly, and shadow rays have no
-//! variance but that of what they meet.
+//! variance but that of what they meet. Where paths run into the sky as well, it is what the luminance is [above its mean](super::above_mean).
 
+use super::above_mean::AboveMean;
 use super::cumulative::Cumulative;
 use super::{Along, Look};
+use crate::light::LightSampling;
 use etalon_optics::colour::rec709_luminance;
 use etalon_optics::{Real, atan2_turns};
 use etalon_scene::Image;
@@ -21,25 +23,29 @@ pub(super) struct EqualArea {
     rows: Cumulative,
     /// The texels of each row.
     columns: Cumulative,
-    /// ∫ of the luminance over all directions, sr.
-    total: f64,
+    /// What of the luminance they are chosen by.
+    above: AboveMean,
 }
 
 impl EqualArea {
-    pub(super) fn new(image: &Image) -> Self {
+    pub(super) fn new(image: &Image, sampling: LightSampling) -> Self {
         let side = image.width as usize;
+        let texels = |row: usize| (0..side).map(move |column| rec709_luminance(image.texel(column, row)));
+        let above = AboveMean::new(sampling, |above| {
+            let sum: f64 = (0..side).flat_map(texels).map(|luminance| above.of(luminance)).sum();
+            sum * (4.0 * PI / (side * side) as f64)
+        });
         let mut columns = Cumulative::new(side, side);
-        let of_rows: Vec<f64> = (0..side)
-            .map(|row| columns.push((0..side).map(|column| rec709_luminance(image.texel(column, row)))))
-            .collect();
+        let of_rows: Vec<f64> =
+            (0..side).map(|row| columns.push(texels(row).map(|luminance| above.of(luminance)))).collect();
         let mut rows = Cumulative::new(side, 1);
-        let whole = rows.push(of_rows.into_iter());
-        Self { side, rows, columns, total: whole * (4.0 * PI / (side * side) as f64) }
+        rows.push(of_rows.into_iter());
+        Self { side, rows, columns, above }
     }
 
-    /// ∫ of the luminance over all directions, sr.
-    pub(super) fn total(&self) -> f64 {
-        self.total
+    /// What of the luminance directions are drawn by.
+    pub(super) fn above(&self) -> &AboveMean {
+        &self.above
     }
 
     /// The colours in some directions, and their densities.
@@ -49,7 +55,7 @@ impl EqualArea {
         wi.map(|wi| {
             let [u, v] = square(wi);
             let colour = image.texel(texel(u), texel(v));
-            Look { colour, density: rec709_luminance(colour) / self.total }
+            Look { colour, density: self.above.density(self.above.of(rec709_luminance(colour))) }
         })
     }
 

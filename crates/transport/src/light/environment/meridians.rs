@@ -9,10 +9,13 @@
 //! function of the same four corners in longitude and the *cosine* of the polar angle, in which solid angle is uniform. So the
 //! factor sin θ is exact, a cell is chosen by the mean of its corners times its solid angle, both inversions are in closed
 //! form, and where the image is not black the density is not zero. Within a cell the two functions differ by how the polar
-//! angle and its cosine run between two rows: by at most a factor of two, next to the poles.
+//! angle and its cosine run between two rows: by at most a factor of two, next to the poles. Where paths run into the sky as well, corners count
+//! by what they are [above the mean](super::above_mean).
 
+use super::above_mean::AboveMean;
 use super::cumulative::Cumulative;
 use super::{Along, Look};
+use crate::light::LightSampling;
 use etalon_optics::colour::rec709_luminance;
 use etalon_optics::{Real, atan2_turns};
 use etalon_scene::Image;
@@ -34,8 +37,8 @@ pub(in crate::light) struct Meridians {
     rows: Cumulative,
     /// The cells of each row.
     columns: Cumulative,
-    /// ∫ of the function that the density is proportional to: luminance · sr.
-    total: f64,
+    /// What of the luminance they are drawn by.
+    above: AboveMean,
 }
 
 /// Where a direction stands between the centres of texels.
@@ -52,36 +55,32 @@ struct Place {
 
 impl Meridians {
     /// `at_poles`: the first and the last row of texels lie at the poles, not half a row from them.
-    pub(in crate::light) fn new(image: &Image, at_poles: bool) -> Self {
+    pub(in crate::light) fn new(image: &Image, at_poles: bool, sampling: LightSampling) -> Self {
         let (width, height) = (image.width as usize, image.height as usize);
         let (intervals, first, before, last) =
             if at_poles { (height as f64 - 1.0, 0.0, 1.0, height - 1) } else { (height as f64, 0.5, 0.5, height) };
         let mut cosines: Vec<f64> = (0..height).map(|row| (PI * (row as f64 + first) / intervals).cos()).collect();
         cosines.insert(0, 1.0);
         cosines.push(-1.0);
+        let solid_angle = |row: usize| (TAU / width as f64) * (cosines[row] - cosines[row + 1]);
+        let above = AboveMean::new(sampling, |above| {
+            let mut total = 0.0;
+            each_row_of_cells(image, above, |row, cells| total += cells.iter().sum::<f64>() * solid_angle(row));
+            total
+        });
         let mut columns = Cumulative::new(width, height + 1);
-        let luminances_of =
-            |row: usize| -> Vec<f64> { (0..width).map(|column| rec709_luminance(image.texel(column, row))).collect() };
-        let mut luminances: [Vec<f64>; 2] = [Vec::new(), luminances_of(0)];
         let mut of_rows = Vec::with_capacity(height + 1);
-        for row in 0..=height {
-            luminances.swap(0, 1);
-            luminances[1] = luminances_of(row.min(height - 1));
-            let [upper, lower] = &luminances;
-            let sum = columns.push((0..width).map(|j| {
-                let k = if j + 1 == width { 0 } else { j + 1 };
-                0.25 * (upper[j] + upper[k] + lower[j] + lower[k])
-            }));
-            of_rows.push(sum * (TAU / width as f64) * (cosines[row] - cosines[row + 1]));
-        }
+        each_row_of_cells(image, above, |row, cells| {
+            of_rows.push(columns.push(cells.iter().copied()) * solid_angle(row))
+        });
         let mut rows = Cumulative::new(height + 1, 1);
-        let total = rows.push(of_rows.into_iter());
-        Self { width, height, intervals, before, last, cosines, rows, columns, total }
+        rows.push(of_rows.into_iter());
+        Self { width, height, intervals, before, last, cosines, rows, columns, above }
     }
 
-    /// ∫ of the luminance over all directions, sr.
-    pub(in crate::light) fn total(&self) -> f64 {
-        self.total
+    /// What of the luminance directions are drawn by.
+    pub(in crate::light) fn above(&self) -> &AboveMean {
+        &self.above
     }
 
     /// The colours in some directions, and their densities.
@@ -112,7 +111,7 @@ impl Meridians {
             for (corner, (column, row)) in
                 corners.iter_mut().zip([(j, upper), (right, upper), (j, lower), (right, lower)])
             {
-                corner[k] = rec709_luminance(image.texel(column, row));
+                corner[k] = self.above.of(rec709_luminance(image.texel(column, row)));
             }
             (cosines[0][k], cosines[1][k], left[k]) = (self.cosines[row], self.cosines[row + 1], j as f64);
         }
@@ -164,18 +163,39 @@ impl Meridians {
     fn interpolate(&self, image: &Image, place: Place) -> Look {
         let [left, right] = place.columns;
         let [above, below] = self.rows_around(place.row);
-        // The image along both rows of texels, from which the colour mixes by angle and the density by cosine.
-        let upper = mix(image.texel(left, above), image.texel(right, above), place.across);
-        let lower = mix(image.texel(left, below), image.texel(right, below), place.across);
+        let texels = [(left, above), (right, above), (left, below), (right, below)].map(|(x, y)| image.texel(x, y));
+        // Along both rows of texels, from which the colour mixes by angle and the density by cosine.
+        let [upper, lower] = [mix(texels[0], texels[1], place.across), mix(texels[2], texels[3], place.across)];
         let colour = mix(upper, lower, place.down);
-        let (upper, lower) = (rec709_luminance(upper), rec709_luminance(lower));
-        Look { colour, density: (upper + place.down_by_cosine * (lower - upper)) / self.total }
+        let [a, b, c, d] = texels.map(|texel| self.above.of(rec709_luminance(texel)));
+        let (upper, lower) = (a + place.across * (b - a), c + place.across * (d - c));
+        Look { colour, density: self.above.density(upper + place.down_by_cosine * (lower - upper)) }
     }
 
     /// The rows of texels above and below a row of cells.
     #[inline(always)]
     fn rows_around(&self, row: usize) -> [usize; 2] {
         [row.saturating_sub(1), row.min(self.height - 1)]
+    }
+}
+
+/// Gives `put` the rows of cells with the means of their corners.
+fn each_row_of_cells(image: &Image, above: AboveMean, mut put: impl FnMut(usize, &[f64])) {
+    let (width, height) = (image.width as usize, image.height as usize);
+    let texels_of = |row: usize| (0..width).map(move |column| above.of(rec709_luminance(image.texel(column, row))));
+    let mut texels: [Vec<f64>; 2] = [Vec::new(), texels_of(0).collect()];
+    let mut cells = Vec::with_capacity(width);
+    for row in 0..=height {
+        texels.swap(0, 1);
+        texels[1].clear();
+        texels[1].extend(texels_of(row.min(height - 1)));
+        let [upper, lower] = &texels;
+        cells.clear();
+        cells.extend((0..width).map(|j| {
+            let k = if j + 1 == width { 0 } else { j + 1 };
+            0.25 * (upper[j] + upper[k] + lower[j] + lower[k])
+        }));
+        put(row, &cells);
     }
 }
 

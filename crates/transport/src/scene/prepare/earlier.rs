@@ -46,9 +46,11 @@ impl Prepared {
     pub(super) fn image_environment(
         &self,
         image: &EnvironmentImage,
-        range_nm: [f64; 2],
+        integrator: &Integrator,
     ) -> Option<Arc<EnvironmentLight>> {
-        if self.scene.integrator.wavelength_range_nm != range_nm {
+        let own = &self.scene.integrator;
+        if (own.wavelength_range_nm, own.light_sampling) != (integrator.wavelength_range_nm, integrator.light_sampling)
+        {
             return None;
         }
         let images = self.scene.lights.iter().filter_map(|light| match &light.kind {
