@@ -31,6 +31,12 @@ impl Lambert {
         self.reflectance.uniform()
     }
 
+    /// What it reflects of red, green and blue at a place, if an image or the vertices around show that.
+    #[inline]
+    pub(crate) fn colour(&self, place: TexturePoint) -> Option<[f64; 3]> {
+        self.reflectance.colour(place)
+    }
+
     /// At a place.
     #[inline]
     pub(crate) fn reflectance<const N: usize>(&self, lambda_nm: &Lanes<f64, N>, place: TexturePoint) -> Lanes<f64, N> {

@@ -284,6 +284,15 @@ impl Bsdf {
         }
     }
 
+    /// Its diffuse reflection, of a surface that is nothing else for light that keeps its wavelength.
+    pub(crate) fn lambert(&self) -> Option<&Lambert> {
+        match self {
+            Self::Lambert(lambert) => Some(lambert),
+            Self::Fluorescent(surface) => Some(surface.reflection()),
+            _ => None,
+        }
+    }
+
     /// Whether it has a [`Bsdf::reflection_probability`].
     pub(crate) fn is_smooth_glass(&self) -> bool {
         matches!(self.untinted(), Self::Dielectric(_) | Self::ThinDielectric(_))

@@ -112,7 +112,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
                 if cos == 0.0 {
                     return None;
                 }
-                (self.spectrum(world, slot) * lambert::density(cos), weight)
+                (self.diffuse_reflectance(world, vertex, slot) * lambert::density(cos), weight)
             }
             _ => {
                 let (f_cos, density_of_walk) = self.eval(world, vertex, sample.wi);

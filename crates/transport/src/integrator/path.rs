@@ -11,7 +11,7 @@ use crate::media::{MediumInteraction, MediumStack};
 use crate::polarisation::Polarisation;
 use crate::sampler::Sampler;
 use crate::scene::interaction::{SurfaceInteraction, Walk};
-use crate::scene::shading_tables::SpectrumCache;
+use crate::scene::shading_tables::{Slot, SpectrumCache};
 use crate::scene::world::World;
 use crate::spectral::Colour;
 use crate::wavelength::Wavelengths;
@@ -370,6 +370,20 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
     #[inline(always)]
     pub(super) fn spectrum(&mut self, world: &World<'a>, slot: u8) -> Lanes<f64, N> {
         self.spectra.spectrum(slot, world.tables, &self.wavelengths)
+    }
+
+    /// The reflectance of a surface of the kind [`BsdfKind::Lambert`].
+    #[inline(always)]
+    pub(super) fn diffuse_reflectance(
+        &mut self,
+        world: &World<'a>,
+        vertex: &SurfaceInteraction<'a>,
+        slot: Slot,
+    ) -> Lanes<f64, N> {
+        match slot {
+            Some(slot) => self.spectrum(world, slot),
+            None => self.spectra.colour(Colour::Rgb(vertex.colour), &self.wavelengths.lambda_nm),
+        }
     }
 
     /// The spectrum of a light; where an image colours it, its white.

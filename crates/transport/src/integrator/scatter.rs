@@ -51,7 +51,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
                     return (Lanes::ZERO, 0.0);
                 }
                 let density = lambert::density(cos);
-                (self.spectrum(world, slot) * density, density)
+                (self.diffuse_reflectance(world, vertex, slot) * density, density)
             }
             BsdfKind::Mirror(_) | BsdfKind::Dielectric(_) => (Lanes::ZERO, 0.0),
             BsdfKind::General => {
@@ -134,7 +134,8 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         // Each kind takes the step by itself, so that what is constant for it is known to the compiler.
         match (direction, vertex.kind) {
             (Direction::Diffuse { wi, cos, guiding }, BsdfKind::Lambert(slot)) => {
-                let (weight, density) = (self.spectrum(world, slot), Density::SolidAngle(lambert::density(cos)));
+                let weight = self.diffuse_reflectance(world, vertex, slot);
+                let density = Density::SolidAngle(lambert::density(cos));
                 let sample = BsdfSample { wi, weight, density, lane_density, eta: 1.0 };
                 self.take(world, vertex, &sample, guiding, u_lobe)
             }

@@ -33,6 +33,8 @@ pub(crate) struct SurfaceInteraction<'a> {
     /// Whether it is no surface, only a place where one medium ends and another begins.
     pub is_open: bool,
     pub kind: BsdfKind,
+    /// What it reflects of red, green and blue, where [`BsdfKind::Lambert`] asks for it.
+    pub colour: [f64; 3],
     /// Whether shadow rays are sent from here.
     pub sees_lights: bool,
     /// What it does to light, where that is general and has been prepared.
@@ -52,6 +54,7 @@ impl<'a> SurfaceInteraction<'a> {
             crosses: false,
             is_open: false,
             kind: BsdfKind::General,
+            colour: [0.0; 3],
             sees_lights: false,
             scattering: None,
         }
@@ -65,8 +68,7 @@ impl<'a> SurfaceInteraction<'a> {
 
     /// The same surface, seen from another direction.
     pub(crate) fn seen_from(&self, wo: Vec3<f64>) -> Self {
-        let Self { hit, point, surface, interface, crosses, is_open, kind, sees_lights, scattering, .. } = *self;
-        Self { hit, point, wo, surface, interface, crosses, is_open, kind, sees_lights, scattering }
+        Self { wo, ..*self }
     }
 
     /// Becomes another one, as [`SurfaceInteraction::new`] has it.
@@ -126,8 +128,14 @@ impl<'a> SurfaceInteraction<'a> {
             ShadowRays::WhereUseful => world.tables.has_solid_angle_part(material),
             ShadowRays::Everywhere => true,
         };
-        if self.kind == BsdfKind::General {
-            self.scattering = Some(self.surface.scattering(world.geometry, &self.point, &self.hit, self.interface));
+        match self.kind {
+            BsdfKind::General => {
+                self.scattering = Some(self.surface.scattering(world.geometry, &self.point, &self.hit, self.interface));
+            }
+            BsdfKind::Lambert(None) => {
+                self.colour = self.surface.diffuse_colour(world.geometry, &self.point, &self.hit);
+            }
+            BsdfKind::Lambert(Some(_)) | BsdfKind::Mirror(_) | BsdfKind::Dielectric(_) => {}
         }
     }
 

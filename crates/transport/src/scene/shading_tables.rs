@@ -22,8 +22,8 @@ pub(crate) type Slot = Option<u8>;
 /// The BSDFs that drivers draw directions of with vector instructions: around the surface's own normal, the same everywhere.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum BsdfKind {
-    /// Lambert's reflection, of this reflectance.
-    Lambert(u8),
+    /// Lambert's reflection, of this reflectance; `None` of the colour that an image or the vertices around show at the place.
+    Lambert(Slot),
     /// A mirror's, of this reflectance.
     Mirror(u8),
     /// That of a smooth interface: its number.
@@ -163,13 +163,15 @@ impl ShadingTables {
 }
 
 fn kind(bsdf: &Bsdf, spectra: &mut Vec<PathSpectrum>, interfaces: &mut Vec<SmoothInterface>) -> BsdfKind {
-    let of = |known: Slot, kind: fn(u8) -> BsdfKind| known.map_or(BsdfKind::General, kind);
+    let mut known = |spectrum: &PathSpectrum| slot(spectrum, spectra);
+    if let Some(lambert) = bsdf.lambert() {
+        return match lambert.uniform() {
+            Some(spectrum) => known(spectrum).map_or(BsdfKind::General, |place| BsdfKind::Lambert(Some(place))),
+            None => BsdfKind::Lambert(None),
+        };
+    }
     match bsdf {
-        Bsdf::Lambert(lambert) => of(lambert.uniform().and_then(|spectrum| slot(spectrum, spectra)), BsdfKind::Lambert),
-        Bsdf::Fluorescent(surface) => {
-            of(surface.reflection().uniform().and_then(|spectrum| slot(spectrum, spectra)), BsdfKind::Lambert)
-        }
-        Bsdf::Mirror(mirror) => of(mirror.uniform().and_then(|spectrum| slot(spectrum, spectra)), BsdfKind::Mirror),
+        Bsdf::Mirror(mirror) => mirror.uniform().and_then(known).map_or(BsdfKind::General, BsdfKind::Mirror),
         // The general way knows what films do.
         Bsdf::Dielectric(glass) if interfaces.len() < INTERFACES && !glass.is_coated() => {
             interfaces.push(SmoothInterface { glass: glass.clone(), constant: glass.constant_indices() });

@@ -206,6 +206,12 @@ impl<'a> Surface<'a> {
         Scattering { bsdf: self.bsdf(), at: shading.between(interface) }
     }
 
+    /// What it reflects of red, green and blue at a point of it, if that is diffuse and shown by an image or by vertices.
+    pub(crate) fn diffuse_colour(&self, geometry: &Geometry, point: &SurfacePoint<f64>, hit: &Hit<f64>) -> [f64; 3] {
+        let place = self.own.coordinates.texture_point(&at(geometry, point, hit));
+        self.bsdf().lambert().and_then(|lambert| lambert.colour(place)).expect("the kind of surface says that it is so")
+    }
+
     /// Whether it gives light back at other wavelengths.
     pub(crate) fn fluoresces(&self) -> bool {
         self.surfaces.properties[self.material].fluoresces

@@ -3,6 +3,7 @@
 use crate::bsdf::Shading;
 use crate::frame::{SceneFrame, mapped};
 use crate::surface::quadric_uv::RoundCoordinates;
+use crate::texture::TexturePoint;
 use etalon_geometry::{Geometry, PrimitiveId, SurfaceId};
 use etalon_optics::Vec3;
 use etalon_optics::colour::rec709_luminance;
@@ -82,6 +83,17 @@ impl Coordinates {
             Self::Round(round) => round.uv(at.geometry.local_point(at.surface, at.position, at.time)),
             Self::Mesh(mesh) => mesh.uv(at.surface.primitive, at.uv),
         }
+    }
+
+    /// The point as textures see it.
+    #[inline]
+    pub(crate) fn texture_point(&self, at: &At<'_>) -> TexturePoint {
+        let colour = match self {
+            Self::Mesh(mesh) => mesh.colour(at.surface.primitive, at.uv),
+            Self::None | Self::Parallelogram { .. } | Self::Round(_) => None,
+        };
+        let point = TexturePoint::of_uv(self.uv(at));
+        TexturePoint { colour: colour.unwrap_or(point.colour), ..point }
     }
 
     /// The point as scattering sees it.
