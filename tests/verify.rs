@@ -25,6 +25,22 @@ fn row<'a>(report: &'a Value, name: &str) -> &'a Value {
     report["truths"].as_array().unwrap().iter().find(|row| row["name"] == name).unwrap_or_else(|| panic!("no {name}"))
 }
 
+/// A furnace without noise, and a truth of which the first samples can not exclude its mistakes.
+#[test]
+fn a_coarse_run_takes_the_first_samples_and_fails_nothing_for_its_noise() {
+    let paths_of = |options: &str| {
+        let report = etalon_line(&format!("verify camera-passing-an-edge fog-in-a-furnace --json {options}"), [])
+            .expect(0)
+            .json();
+        assert_eq!(report["failed"], 0, "{report}");
+        let rows = report["truths"].as_array().unwrap();
+        rows.iter().map(|row| row["paths"].as_u64().unwrap()).collect::<Vec<_>>()
+    };
+    let (coarse, whole) = (paths_of("--coarse"), paths_of(""));
+    assert!(coarse.iter().zip(&whole).all(|(few, many)| few <= many), "{coarse:?} {whole:?}");
+    assert!(coarse.iter().sum::<u64>() < whole.iter().sum(), "{coarse:?} {whole:?}");
+}
+
 #[test]
 fn a_few_truths_hold_and_are_reported_in_the_documented_form() {
     let report = etalon_line("verify eye-in-diamond sky-alone lens-closed --json", []).expect(0).json();

@@ -26,11 +26,21 @@ pub const CUT_SHARE: f64 = 0.1;
 /// It also fails when paths were cut that may have carried more than [`CUT_SHARE`] of that bias: what has been left out would no longer be
 /// small beside what the test sees. Where it is, it could hide as much of an error of the other sign, and is added to the resolvable bias.
 pub fn judge(truth: &Truth, reading: &Reading, significance: f64) -> Verdict {
+    judge_to(truth, reading, significance, truth.must_resolve())
+}
+
+/// The same, however large the noise is: it fails where [`judge`] would find the reading wrong, not where it shows nothing. For readings of many
+/// seeds, which show something together.
+pub fn judge_whatever_the_noise(truth: &Truth, reading: &Reading, significance: f64) -> Verdict {
+    judge_to(truth, reading, significance, f64::INFINITY)
+}
+
+/// Holds a reading to the truth that must be able to see a bias of `needed`.
+fn judge_to(truth: &Truth, reading: &Reading, significance: f64, needed: f64) -> Verdict {
     if reading.nonfinite > 0 {
         return Verdict::broken(&truth.name, format!("{} samples were not finite numbers", reading.nonfinite));
     }
     let mut verdict = z_verdict(&truth.name, &reading.estimate, truth.value(), truth.tolerance(), significance);
-    let needed = truth.must_resolve();
     if verdict.pass && verdict.resolvable_bias > needed {
         let noise = (verdict.resolvable_bias - truth.tolerance()) / (needed - truth.tolerance()).max(0.0);
         let nearest = truth.mistakes().iter().find(|mistake| (mistake.value - truth.value()).abs() <= needed);

@@ -104,7 +104,7 @@ pub use irradiance::{
 pub use rami::rami;
 pub use suite_case::SuiteCase;
 
-pub use judge::{CUT_SHARE, Renders, judge};
+pub use judge::{CUT_SHARE, Renders, judge, judge_whatever_the_noise};
 pub use prisms::photometric_weight;
 
 /// What is read off a picture.

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use etalon_oracle::statistics::{Budget, Welford};
 use etalon_oracle::subjects::Reading;
-use etalon_oracle::truths::{Claim, Quantity, SceneFile, Truth, judge};
+use etalon_oracle::truths::{Claim, Quantity, SceneFile, Truth, judge, judge_whatever_the_noise};
 use etalon_scene::{Filter, NamedFile, PathReuse, Scene};
 use etalon_transport::{Counters, Study};
 use miette::Report as Problem;
@@ -173,7 +173,7 @@ pub(super) fn run(args: &VerifyArgs, chosen: Vec<Truth>) -> Outcome {
             .concat();
     let chosen: Vec<Truth> = chosen.into_iter().filter(|truth| truth.applies_to(&claims)).collect();
     // Of all truths some are judged a second time, by more samples.
-    let again = args.names.is_empty() && !args.thorough;
+    let again = args.names.is_empty() && !args.thorough && !args.coarse;
     let significance = Budget::for_tests(chosen.len() * if again { 2 } else { 1 }).each();
     let mut report = Report::new(!args.json).with_seed(args.seed).of(chosen.len());
     let mut costs = Vec::with_capacity(chosen.len());
@@ -226,7 +226,9 @@ pub(super) fn judged<'a>(
     let seconds = || start.elapsed().as_secs_f64();
     match measured {
         Ok((reading, paths, cut, cost)) => {
-            let row = Row::new(truth, Ok(reading), significance).took(seconds(), Some(paths));
+            let judge = if args.coarse { judge_whatever_the_noise } else { judge };
+            let row = Row::by(truth, Ok(reading), |reading| judge(truth, reading, significance));
+            let row = row.took(seconds(), Some(paths));
             Some((row.cut(cut, reading.cut_bias), cost))
         }
         Err(Stop::Failed(why)) => {
@@ -254,7 +256,7 @@ fn measured(
             break Ok((reading, effort));
         }
         let seen = judge(truth, &reading, significance).resolvable_bias;
-        let enough = seen <= truth.must_resolve() || effort >= MOST_TO_COUNT;
+        let enough = args.coarse || seen <= truth.must_resolve() || effort >= MOST_TO_COUNT;
         let thorough = || is_worth_more(measurement.rays(), seen_before, seen, wanted);
         if enough && !(args.thorough && thorough()) {
             break Ok((reading, effort));
@@ -361,6 +363,7 @@ mod tests {
             json: false,
             seed: 1,
             thorough: false,
+            coarse: false,
             threads: Some(1),
         }
     }

@@ -104,8 +104,13 @@ impl Row {
 
     /// Judges a reading, or says why there is none.
     pub(super) fn new(truth: &Truth, reading: Result<Reading, String>, significance: f64) -> Self {
+        Self::by(truth, reading, |reading| judge(truth, reading, significance))
+    }
+
+    /// The same by another judge.
+    pub(super) fn by(truth: &Truth, reading: Result<Reading, String>, judge: impl Fn(&Reading) -> Verdict) -> Self {
         let (estimate, verdict) = match reading {
-            Ok(reading) => (reading.estimate, judge(truth, &reading, significance)),
+            Ok(reading) => (reading.estimate, judge(&reading)),
             Err(why) => (Estimate::new(f64::NAN, f64::NAN), Verdict::broken(&truth.name, why)),
         };
         // What is not a number excludes nothing.
