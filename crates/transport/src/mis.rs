@@ -9,6 +9,38 @@ pub enum Density {
     Delta,
 }
 
+/// How shadow rays are weighed against the walk.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Heuristic {
+    /// [`power_heuristic`], of lamps.
+    Power,
+    /// [`balance_heuristic`], of skies: their densities are made for it.
+    Balance,
+}
+
+impl Heuristic {
+    /// Of light from infinity or of a lamp.
+    #[inline(always)]
+    pub fn of(from_infinity: bool) -> Self {
+        if from_infinity { Self::Balance } else { Self::Power }
+    }
+
+    /// The weight of the technique of density `own` against one of density `other`.
+    #[inline(always)]
+    pub fn weight(self, own: f64, other: f64) -> f64 {
+        match self {
+            Self::Power => power_heuristic(own, other),
+            Self::Balance => balance_heuristic(own, other),
+        }
+    }
+}
+
+/// The balance heuristic (Veach 1997, §9.2.2) for the technique of density `own` against one of density `other`.
+#[inline]
+pub fn balance_heuristic(own: f64, other: f64) -> f64 {
+    1.0 / (1.0 + other / own)
+}
+
 /// The power heuristic (Veach 1997, §9.2.4, β = 2) for the technique of density `own` against one of density `other`,
 /// in the form 1/(1 + (other/own)²): it neither overflows nor becomes ∞/∞ where the squares would.
 #[inline]
@@ -36,8 +68,11 @@ mod tests {
         #[test]
         fn weights_of_both_techniques_sum_to_one(a in -80.0..80.0_f64, b in -80.0..80.0_f64) {
             let (a, b) = (10f64.powf(a), 10f64.powf(b));
-            // Three roundings in each weight.
-            prop_assert!((power_heuristic(a, b) + power_heuristic(b, a) - 1.0).abs() <= 6.0 * f64::EPSILON);
+            for heuristic in [Heuristic::Power, Heuristic::Balance] {
+                // Three roundings in each weight.
+                let sum = heuristic.weight(a, b) + heuristic.weight(b, a);
+                prop_assert!((sum - 1.0).abs() <= 6.0 * f64::EPSILON, "{heuristic:?}");
+            }
         }
     }
 }

@@ -11,7 +11,7 @@ use crate::bsdf::lambert;
 use crate::integrator::wavelength_lanes::WavelengthModel;
 use crate::integrator::{LambertTerms, LightDraw, NextEvent, beyond_target, light_weight};
 use crate::light::{Light, LightSample, LightTable, Target};
-use crate::mis::Density;
+use crate::mis::{Density, Heuristic};
 use crate::polarisation::Polarisation;
 use crate::sampler::{CAMERA_SETS, SETS_PER_VERTEX, Samplers, Wanted};
 use etalon_geometry::{LANES, Rays, SurfaceId};
@@ -174,8 +174,9 @@ impl<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Batch<'_, M, P, 
             }
         }
         lambert_cosines(self.level, (&paths.normal, &paths.direction, &draws.light_samples.wi), &mut draws.cos);
-        let Lights { cos, light_samples, probability, weight, .. } = draws;
-        weights(self.level, world.light_sampling, cos, &light_samples.density, probability, weight);
+        let Lights { cos, light_samples, probability, weight, skies, .. } = draws;
+        let densities = (&light_samples.density, &*probability);
+        weights(self.level, world.light_sampling, cos, densities, skies.mask, weight);
         let mut next = [NextEvent { f_cos: Lanes::ZERO, weight: 0.0 }; W];
         let mut asks: Mask = 0;
         draws.rows = rows;
@@ -336,20 +337,30 @@ stages! {
     }
 
     /// [`light_weight`] of points of lights, against Lambert's directions.
-    fn weights(sampling: LightSampling, cos: &Row, density: &Row, probability: &Row, weights: &mut Row) {
-        // Outside of the loop, which is to have no branches.
-        match sampling {
-            LightSampling::Mis => {
+    fn weights(sampling: LightSampling, cos: &Row, densities: (&Row, &Row), skies: Mask, weights: &mut Row) {
+        let (density, probability) = densities;
+        let weight = |lane: usize, sampling: LightSampling, heuristic: Heuristic| {
+            let of_light = Density::SolidAngle(density.0[lane]);
+            let against_walk = (heuristic, lambert::density(cos.0[lane]));
+            light_weight(sampling, of_light, 1.0, probability.0[lane], against_walk)
+        };
+        // Outside of the loops, which are to have no branches.
+        match (sampling, skies) {
+            (LightSampling::Mis, 0) => {
                 for lane in 0..W {
-                    let of_walk = lambert::density(cos.0[lane]);
-                    let of_light = Density::SolidAngle(density.0[lane]);
-                    weights.0[lane] = light_weight(LightSampling::Mis, of_light, 1.0, probability.0[lane], of_walk);
+                    weights.0[lane] = weight(lane, LightSampling::Mis, Heuristic::Power);
                 }
             }
-            LightSampling::Light | LightSampling::Bsdf => {
+            (LightSampling::Mis, _) => {
                 for lane in 0..W {
-                    let of_light = Density::SolidAngle(density.0[lane]);
-                    weights.0[lane] = light_weight(sampling, of_light, 1.0, probability.0[lane], 0.0);
+                    let [of_lamp, of_sky] =
+                        [Heuristic::Power, Heuristic::Balance].map(|heuristic| weight(lane, LightSampling::Mis, heuristic));
+                    weights.0[lane] = if skies >> lane & 1 == 1 { of_sky } else { of_lamp };
+                }
+            }
+            (LightSampling::Light | LightSampling::Bsdf, _) => {
+                for lane in 0..W {
+                    weights.0[lane] = weight(lane, sampling, Heuristic::Power);
                 }
             }
         }

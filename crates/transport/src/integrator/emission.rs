@@ -6,7 +6,7 @@ use crate::film::Counters;
 use crate::integrator::observer::{Found, Observer};
 use crate::integrator::wavelength_lanes::WavelengthModel;
 use crate::light::{Environment, EnvironmentRadiance, Light, Look, SkyLook};
-use crate::mis::power_heuristic;
+use crate::mis::Heuristic;
 use crate::polarisation::Polarisation;
 use crate::scene::interaction::SurfaceInteraction;
 use crate::scene::shading_tables::Slot;
@@ -131,8 +131,9 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             return 1.0;
         }
         let Some(light) = light() else { return 1.0 };
+        let heuristic = Heuristic::of(on.is_none());
         if let Since::Interfaces(Through { wi, .. }) = since {
-            return power_heuristic(density, world.density_toward(light, (from, leaves), wi, ray.time));
+            return heuristic.weight(density, world.density_toward(light, (from, leaves), wi, ray.time));
         }
         let light = light as usize;
         let of_direction = density_of(&world.lights.lights()[light], from);
@@ -141,7 +142,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             _ if of_direction == 0.0 => 1.0,
             LightSampling::Light => 0.0,
             LightSampling::Bsdf => 1.0,
-            LightSampling::Mis => power_heuristic(density, world.lights.probability(light, from) * of_direction),
+            LightSampling::Mis => heuristic.weight(density, world.lights.probability(light, from) * of_direction),
         }
     }
 }

@@ -211,7 +211,8 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         LightDraw { light, probability, sample, .. }: &LightDraw,
     ) -> Option<NextEvent<N>> {
         let density = vertex.medium.phase.density(-vertex.wo.dot(sample.wi));
-        let mut weight = light_weight(world.light_sampling, sample.density, sample.scale, *probability, density);
+        let against_walk = (sample.target.heuristic(), density);
+        let mut weight = light_weight(world.light_sampling, sample.density, sample.scale, *probability, against_walk);
         let lamp = &world.lights.lights()[*light as usize];
         let coefficients = || vertex.medium.coefficients(&self.wavelengths.lambda_nm);
         if let (true, Some(participating)) = (lamp.lights_parts(), &world.participating)

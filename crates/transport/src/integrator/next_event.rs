@@ -8,7 +8,7 @@ use crate::integrator::observer::{Found, Observer};
 use crate::integrator::wavelength_lanes::WavelengthModel;
 use crate::light::{LightSample, Target};
 use crate::media::{MediumStack, Participating, Way};
-use crate::mis::{Density, power_heuristic};
+use crate::mis::{Density, Heuristic};
 use crate::polarisation::Polarisation;
 use crate::scene::interaction::{SurfaceInteraction, Walk};
 use crate::scene::shading_tables::BsdfKind;
@@ -76,7 +76,7 @@ pub(crate) fn light_weight(
     density: Density,
     scale: f64,
     probability: f64,
-    density_of_walk: f64,
+    (heuristic, density_of_walk): (Heuristic, f64),
 ) -> f64 {
     match density {
         Density::Delta => scale / probability,
@@ -85,7 +85,7 @@ pub(crate) fn light_weight(
             let mis = match sampling {
                 LightSampling::Light => 1.0,
                 LightSampling::Bsdf => 0.0,
-                LightSampling::Mis => power_heuristic(density, density_of_walk),
+                LightSampling::Mis => heuristic.weight(density, density_of_walk),
             };
             mis * (scale / density)
         }
@@ -116,8 +116,8 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             }
             _ => {
                 let (f_cos, density_of_walk) = self.eval(world, vertex, sample.wi);
-                let sampling = world.light_sampling;
-                (f_cos, light_weight(sampling, sample.density, sample.scale, *probability, density_of_walk))
+                let (sampling, against_walk) = (world.light_sampling, (sample.target.heuristic(), density_of_walk));
+                (f_cos, light_weight(sampling, sample.density, sample.scale, *probability, against_walk))
             }
         };
         if f_cos.is_zero() { None } else { Some(NextEvent { f_cos, weight }) }

@@ -36,7 +36,7 @@ pub(crate) use table::{visible_sum, weighted_sum};
 
 use crate::frame::SceneFrame;
 use crate::media::Way;
-use crate::mis::Density;
+use crate::mis::{Density, Heuristic};
 use crate::spectral::{Colour, PathSpectrum};
 use etalon_geometry::SurfaceId;
 use etalon_optics::{Spectrum, Vec3};
@@ -54,6 +54,12 @@ pub enum Target {
 }
 
 impl Target {
+    /// How shadow rays that end there are weighed against the walk.
+    #[inline(always)]
+    pub(crate) fn heuristic(&self) -> Heuristic {
+        Heuristic::of(*self == Self::Infinity)
+    }
+
     /// How far it is from a point.
     pub fn distance(&self, from: Vec3<f64>) -> f64 {
         match self {

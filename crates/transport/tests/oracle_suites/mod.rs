@@ -46,6 +46,7 @@ fn functions<R: Real>() -> Vec<Verdict> {
         laws::fresnel_reflects_totally(powers, epsilon, 1),
         laws::frame_is_orthonormal(frame, epsilon, 1),
         laws::mis_weights_add_up(mis::power_heuristic, epsilon, 1),
+        laws::mis_weights_add_up(mis::balance_heuristic, epsilon, 1),
     ]
 }
 

@@ -21,7 +21,7 @@ use crate::integrator::vertex::Vertex;
 use crate::integrator::wavelength_lanes::WavelengthModel;
 use crate::integrator::{Direction, LightDraw, MOST_VERTICES, Path};
 use crate::light::Emitter;
-use crate::mis::{Density, power_heuristic};
+use crate::mis::Density;
 use crate::polarisation::Polarisation;
 use crate::sampler::Sampler;
 use crate::scene::interaction::SurfaceInteraction;
@@ -111,7 +111,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         if density == 0.0 {
             return;
         }
-        let weight = power_heuristic(density, of_walk) / density;
+        let weight = draw.sample.target.heuristic().weight(density, of_walk) / density;
         let factor = f_cos * weight;
         if let Some(stokes) = passed.stokes {
             self.polarisation.record(stokes.map(|s| s * factor));
