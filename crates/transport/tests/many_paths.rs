@@ -61,6 +61,36 @@ fn many_paths_at_once_leave_the_film_of_one_at_a_time_on_scenes_made_up_by_chanc
     }
 }
 
+/// Samples have weights, also those of pixels that share paths, and what they bring beside their colour.
+#[test]
+fn many_paths_at_once_leave_the_film_of_one_at_a_time_with_filters_that_are_negative_somewhere() {
+    for (filter, sample_border) in [("mitchell", true), ("lanczos", false)] {
+        for further in [r#""stokes": true"#, r#""bands_nm": [450, 650, 50]"#, r#""comment": """#] {
+            for path_reuse in ["none", "2x2"] {
+                let text = format!(
+                    r#"{{
+                    "etalon": 1,
+                    "film": {{ "width": 22, "height": 17, "filter": {{ "type": "{filter}" }}, "sample_border": {sample_border}, {further} }},
+                    "integrator": {{ "spp": 4, "path_reuse": "{path_reuse}" }},
+                    "camera": {{ "type": "perspective", "position_m": [0, 1, 4], "look_at_m": [0, 0, 0], "vertical_fov_deg": 45 }},
+                    "objects": [
+                        {{ "shape": {{ "type": "sphere", "center_m": [0, 0, 0], "radius_m": 1 }}, "material": {{ "type": "lambert", "reflectance": 0.5 }} }},
+                        {{ "shape": {{ "type": "sphere", "center_m": [1, 3, 1], "radius_m": 0.4 }}, "material": {{ "type": "black" }},
+                           "emission": {{ "radiance": 20 }} }}
+                    ] }}"#
+                );
+                let shares = path_reuse != "none";
+                if shares && further.contains("stokes") {
+                    continue;
+                }
+                let scene =
+                    parse_with_files(&text, filter, &[], None).unwrap_or_else(|errors| panic!("{errors}")).scene;
+                agrees(&format!("{filter}, {further}, {path_reuse}"), &scene, &Study::default());
+            }
+        }
+    }
+}
+
 /// In blends, on one side, turned, below lamps, with and without polarisation.
 #[test]
 fn many_paths_at_once_leave_the_film_of_one_at_a_time_on_measured_surfaces() {

@@ -137,7 +137,7 @@ CASES = [
     of("orthographic"),
     of("mirrored"),
     of("film-crop", options=("--crop", "28,12,40,48")),
-    *(of("filter", filter=f) for f in ("tent", "gaussian")),
+    *(of("filter", filter=f) for f in ("tent", "gaussian", "mitchell", "catmullrom", "lanczos")),
     of("nested-integrator"),
     of("fog", integrator="volpath", depth=32),
     of("hollow", integrator="volpath", depth=32),

@@ -2,13 +2,15 @@
 
 use etalon_scene::linear::unit;
 use glam::DAffine3;
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::Walk;
 use super::element::{Element, numbers};
 
 /// The diagonal of the 35 mm film that a stated focal length is for, mm.
 const DIAGONAL_35_MM: f64 = 43.266_615_305_567_87;
+/// Most lobes of Lanczos's filter in a scene.
+const MOST_LOBES: f64 = 16.0;
 
 impl<'a> Walk<'a, '_, '_> {
     pub(super) fn integrator(&mut self, element: &'a Element) -> Result<(), String> {
@@ -50,7 +52,7 @@ impl<'a> Walk<'a, '_, '_> {
             }
         }
         if let Some(from) = element.number("rr_depth")?
-            && self.builder.integrator.get("max_depth").and_then(serde_json::Value::as_f64).is_some_and(|d| from > d)
+            && self.builder.integrator.get("max_depth").and_then(Value::as_f64).is_some_and(|d| from > d)
         {
             self.builder.integrator.insert("roulette".to_owned(), json!(false));
         }
@@ -149,18 +151,7 @@ impl<'a> Walk<'a, '_, '_> {
         let (width, height) = (size("width", 768.0)?, size("height", 576.0)?);
         let mut filter = json!({ "type": "gaussian", "sigma_px": 0.5 });
         for rfilter in film.nested("rfilter", self.ids)? {
-            filter = match rfilter.plugin() {
-                "box" => json!({ "type": "box" }),
-                "tent" => json!({ "type": "tent", "radius_px": rfilter.number("radius")?.unwrap_or(1.0) }),
-                "gaussian" => {
-                    json!({ "type": "gaussian", "sigma_px": rfilter.number("stddev")?.unwrap_or(0.5) })
-                }
-                other => {
-                    self.builder.approximate(&rfilter.place, format!("the filter \"{other}\" becomes a Gaussian"));
-                    rfilter.children.iter().for_each(Element::mark);
-                    filter
-                }
-            };
+            filter = self.reconstruction(rfilter)?.unwrap_or(filter);
             rfilter.list_unused(self.builder);
         }
         let crop = ["crop_offset_x", "crop_offset_y", "crop_width", "crop_height"];
@@ -182,6 +173,43 @@ impl<'a> Walk<'a, '_, '_> {
             self.builder.film["sample_border"] = json!(false);
         }
         Ok(width / height)
+    }
+
+    /// The filter of a film, if there is such a filter here.
+    fn reconstruction(&mut self, rfilter: &Element) -> Result<Option<Value>, String> {
+        let filter = match rfilter.plugin() {
+            "box" => json!({ "type": "box" }),
+            "tent" => json!({ "type": "tent", "radius_px": rfilter.number("radius")?.unwrap_or(1.0) }),
+            "gaussian" => json!({ "type": "gaussian", "sigma_px": rfilter.number("stddev")?.unwrap_or(0.5) }),
+            "mitchell" => {
+                let [b, c] = [rfilter.number("B")?, rfilter.number("C")?].map(|number| number.unwrap_or(1.0 / 3.0));
+                if ![b, c].iter().all(|number| (0.0..=1.0).contains(number)) {
+                    let what = format!(
+                        "the filter \"mitchell\" with B {b} and C {c} becomes a Gaussian: both are from 0 to 1"
+                    );
+                    self.builder.approximate(&rfilter.place, what);
+                    return Ok(None);
+                }
+                json!({ "type": "mitchell", "b": b, "c": c })
+            }
+            "catmullrom" => json!({ "type": "mitchell", "b": 0, "c": 0.5 }),
+            "lanczos" => match rfilter.number("lobes")?.unwrap_or(3.0) {
+                lobes if (1.0..=MOST_LOBES).contains(&lobes) => json!({ "type": "lanczos", "lobes": lobes.trunc() }),
+                lobes => {
+                    let what = format!(
+                        "the filter \"lanczos\" of {lobes} lobes becomes a Gaussian: 1 to {MOST_LOBES} are possible"
+                    );
+                    self.builder.approximate(&rfilter.place, what);
+                    return Ok(None);
+                }
+            },
+            other => {
+                self.builder.approximate(&rfilter.place, format!("the filter \"{other}\" becomes a Gaussian"));
+                rfilter.children.iter().for_each(Element::mark);
+                return Ok(None);
+            }
+        };
+        Ok(Some(filter))
     }
 
     /// The `to_world` of an element.

@@ -136,6 +136,19 @@ impl Reading<'_, '_> {
             "box" => json!({ "type": "box" }),
             "triangle" => json!({ "type": "tent", "radius_px": list.number("xradius")?.unwrap_or(2.0) }),
             "gaussian" => json!({ "type": "gaussian", "sigma_px": list.number("sigma")?.unwrap_or(0.5) }),
+            "mitchell" => {
+                let [b, c] = [list.number("B")?, list.number("C")?].map(|number| number.unwrap_or(1.0 / 3.0));
+                let radius = list.number("xradius")?.unwrap_or(2.0);
+                if [b, c].iter().all(|number| (0.0..=1.0).contains(number)) {
+                    json!({ "type": "mitchell", "radius_px": radius, "b": b, "c": c })
+                } else {
+                    let what = format!(
+                        "the filter \"mitchell\" with B {b} and C {c} becomes a Gaussian: both are from 0 to 1"
+                    );
+                    self.builder.approximate(place, what);
+                    json!({ "type": "gaussian" })
+                }
+            }
             other => {
                 self.builder.approximate(place, format!("the filter \"{other}\" becomes a Gaussian"));
                 json!({ "type": "gaussian" })

@@ -4,6 +4,7 @@ mod bounds;
 mod brushed;
 mod checkers;
 mod coordinates;
+mod filters;
 mod grids;
 mod images;
 mod losses;

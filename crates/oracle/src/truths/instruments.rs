@@ -2,6 +2,8 @@
 
 use serde_json::{Value, json};
 
+use std::f64::consts::PI;
+
 use super::{
     Truth,
     scene::{Scene, black, disk, lambert, parallelogram},
@@ -44,7 +46,59 @@ fn filters() -> Vec<Truth> {
         sum(x / sigma) / sum(-3.0)
     };
     let named = |kind: &str, key: &str, width: f64| json!({ "type": kind, key: width });
+    // The integral of Mitchell's filter from x to its end at 2, and that of its magnitude if it changes its sign at 1 only.
+    let catmull_rom = |x: f64| mitchell_from(x, 0.0, 0.5);
+    let of_magnitude = |x: f64, from: &dyn Fn(f64) -> f64| {
+        let half = from(0.0) - 2.0 * from(1.0);
+        (if x < 1.0 { from(x) - 2.0 * from(1.0) } else { -from(x) }) / (2.0 * half)
+    };
+    let third = 1.0 / 3.0;
+    let mitchell = move |x: f64| mitchell_from(x, third, third);
+    let by_steps = |x: f64, b: f64, c: f64| {
+        interval(|t| mitchell_at(t, b, c), x, x.max(1.0), 1e-12).value
+            + interval(|t| mitchell_at(t, b, c), x.max(1.0), 2.0, 1e-12).value
+    };
     vec![
+        make(
+            "filter-mitchell",
+            json!({ "type": "mitchell" }),
+            0.3,
+            mitchell(0.3),
+            "∫ of (7t³ − 12t² + 16/3)/6 to 1, and of (−7t³/3 + 12t² − 20t + 32/3)/6 from 1 to 2",
+        )
+        .confirmed("quadrature", 1e-9, move || by_steps(0.3, third, third))
+        .or_else("a Gaussian of σ ½", gaussian(0.3, 0.5))
+        .or_else("the B-spline", mitchell_from(0.3, 1.0, 0.0)),
+        make(
+            "filter-catmull-rom",
+            json!({ "type": "mitchell", "b": 0, "c": 0.5 }),
+            1.2,
+            catmull_rom(1.2),
+            "∫ of (−3t³ + 15t² − 24t + 12)/6 from 1.2 to 2, which is negative",
+        )
+        .confirmed("quadrature", 1e-9, move || by_steps(1.2, 0.0, 0.5))
+        .or_else("its magnitude", of_magnitude(1.2, &catmull_rom))
+        .or_else("cut where it is negative", 0.0),
+        make(
+            "filter-mitchell-of-one-pixel",
+            json!({ "type": "mitchell", "radius_px": 1, "b": 0.25, "c": 0.75 }),
+            0.2,
+            mitchell_from(0.4, 0.25, 0.75),
+            "that of a radius of 2, from 2 · 0.2",
+        )
+        .confirmed("quadrature", 1e-9, move || by_steps(0.4, 0.25, 0.75))
+        .or_else("a radius of 2", mitchell_from(0.2, 0.25, 0.75))
+        .or_else("b and c exchanged", mitchell_from(0.4, 0.75, 0.25)),
+        make(
+            "filter-lanczos",
+            json!({ "type": "lanczos" }),
+            0.6,
+            lanczos(0.6, 3.0, 3) / lanczos(-3.0, 3.0, 3),
+            "∫ of sinc(t) sinc(t/3) from 0.6 to 3, over that from −3 to 3",
+        )
+        .confirmed("midpoints", 1e-6, || lanczos_by_midpoints(0.6, 3.0) / lanczos_by_midpoints(-3.0, 3.0))
+        .or_else("two lobes", lanczos(0.6, 2.0, 2) / lanczos(-2.0, 2.0, 2))
+        .or_else("not windowed", lanczos(0.6, 3.0, u32::MAX) / lanczos(-3.0, 3.0, u32::MAX)),
         make("filter-tent", named("tent", "radius_px", 1.0), 0.3, tent(0.3, 1.0), "(1 − 0.3)²/2")
             .or_else("a tent of radius ½", tent(0.3, 0.5)),
         make("filter-tent-of-two-pixels", named("tent", "radius_px", 2.0), 0.7, tent(0.7, 2.0), "(1 − 0.35)²/2")
@@ -79,6 +133,44 @@ fn filters() -> Vec<Truth> {
         })
     })
     .collect()
+}
+
+/// Mitchell's and Netravali's cubic at a distance.
+fn mitchell_at(t: f64, b: f64, c: f64) -> f64 {
+    let t = t.abs();
+    let near = (12.0 - 9.0 * b - 6.0 * c) * t.powi(3) + (12.0 * b + 6.0 * c - 18.0) * t * t + 6.0 - 2.0 * b;
+    let far =
+        (-b - 6.0 * c) * t.powi(3) + (6.0 * b + 30.0 * c) * t * t - (12.0 * b + 48.0 * c) * t + 8.0 * b + 24.0 * c;
+    (if t < 1.0 { near } else { far }) / 6.0
+}
+
+/// Its integral from a distance to its end at 2, term by term.
+fn mitchell_from(x: f64, b: f64, c: f64) -> f64 {
+    let near =
+        |t: f64| (3.0 - 2.25 * b - 1.5 * c) * t.powi(4) + (4.0 * b + 2.0 * c - 6.0) * t.powi(3) + (6.0 - 2.0 * b) * t;
+    let far = |t: f64| {
+        (-0.25 * b - 1.5 * c) * t.powi(4) + (2.0 * b + 10.0 * c) * t.powi(3) - (6.0 * b + 24.0 * c) * t * t
+            + (8.0 * b + 24.0 * c) * t
+    };
+    let of_near = if x < 1.0 { near(1.0) - near(x) } else { 0.0 };
+    (of_near + far(2.0) - far(x.max(1.0))) / 6.0
+}
+
+/// Lanczos's filter at a distance, with a window of so many pixels.
+fn lanczos_at(t: f64, window: u32) -> f64 {
+    let sinc = |t: f64| if t == 0.0 { 1.0 } else { (PI * t).sin() / (PI * t) };
+    sinc(t) * sinc(t / f64::from(window))
+}
+
+/// Its integral from one place to another, by quadrature.
+fn lanczos(from: f64, to: f64, window: u32) -> f64 {
+    interval(|t| lanczos_at(t, window), from, to, 1e-12).value
+}
+
+/// The same of a window of 3, by midpoints.
+fn lanczos_by_midpoints(from: f64, to: f64) -> f64 {
+    let step = (to - from) / 60_000.0;
+    (0..60_000).map(|i| from + step * (f64::from(i) + 0.5)).map(|t| lanczos_at(t, 3)).sum::<f64>() * step
 }
 
 /// Films whose pixels get no light from beyond them, before a lamp that begins right of the middle and goes on beyond all edges. Pixels have a side of 1 m.
@@ -130,6 +222,38 @@ fn edges() -> Vec<Truth> {
         )
         .confirmed("midpoints", 1e-6, move || both(midpoints))
         .or_else("light from beyond the film", beyond),
+        make(
+            "filter-lanczos-without-a-border",
+            2,
+            json!({ "type": "lanczos", "lobes": 2 }),
+            0.1,
+            both(|a, b| lanczos(a, b, 2)),
+            "the mean of L(−0.4, ½)/L(−1½, ½) and L(0.6, 1½)/L(−½, 1½), L the integral of sinc(x) sinc(x/2)",
+        )
+        .confirmed("midpoints", 1e-6, move || {
+            both(|a, b| {
+                (0..60_000)
+                    .map(|i| a + (b - a) * (f64::from(i) + 0.5) / 60_000.0)
+                    .map(|t| lanczos_at(t, 2))
+                    .sum::<f64>()
+                    * (b - a)
+                    / 60_000.0
+            })
+        })
+        .or_else(
+            "light from beyond the film",
+            0.5 * (lanczos(-0.4, 2.0, 2) + lanczos(0.6, 2.0, 2)) / lanczos(-2.0, 2.0, 2),
+        )
+        .or_else("weights of the whole filter", {
+            let share = |a: f64, b: f64, from: f64, to: f64| {
+                let magnitude = |a: f64, b: f64| {
+                    let near = lanczos(a.max(-1.0), b.min(1.0), 2);
+                    near - (lanczos(a, b, 2) - near)
+                };
+                lanczos(a, b, 2) / magnitude(from, to) * (magnitude(-2.0, 2.0) / lanczos(-2.0, 2.0, 2))
+            };
+            0.5 * (share(-0.4, 0.5, -1.5, 0.5) + share(0.6, 1.5, -0.5, 1.5))
+        }),
     ]
 }
 
@@ -246,7 +370,7 @@ fn meshes() -> Vec<Truth> {
         }
         Scene::orthographic([0.5, 0.5, 2.0], [0.5, 0.5, 0.0], 0.2)
             .thing(object)
-            .directional_light([-0.6, 0.0, -0.8], std::f64::consts::PI)
+            .directional_light([-0.6, 0.0, -0.8], PI)
             .film(16, 16)
             .spp(64)
     };

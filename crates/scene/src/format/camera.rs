@@ -1,6 +1,7 @@
 //! Cameras and film.
 
 use super::compound_lens::{CompoundLensCamera, compound_lens_camera};
+use super::material::Share;
 use super::motion::{KeyframeForm, Stretch, given, shutter_s};
 use super::spectrum::Wavelength;
 use super::view::{moving, orientation};
@@ -100,6 +101,8 @@ crate::variants! {
 pub(crate) const MAX_SIDE: u64 = 65_536;
 /// Most pixels of a picture: 2²⁸, some ten gigabytes of film.
 pub(crate) const MAX_PIXELS: u64 = 1 << 28;
+/// Most lobes of Lanczos's filter.
+const MOST_LOBES: u64 = 16;
 
 crate::record! {
     /// Size and reconstruction of the picture. At most 2²⁸ pixels.
@@ -141,13 +144,39 @@ crate::record! {
     }
 }
 
+crate::record! {
+    /// The cubic of Mitchell and Netravali. It is negative between half of its radius and all of it, where `c` is above 0.
+    pub(crate) struct MitchellFilter + comment {
+        /// Radius, pixels.
+        radius_px: Required<Positive> = "2",
+        /// How much it smooths: 1 with `c` 0 is the cubic B-spline.
+        b: Required<Share> = "0.3333333333333333",
+        /// How far it is negative: 0.5 with `b` 0 is the spline of Catmull and Rom.
+        c: Required<Share> = "0.3333333333333333",
+    }
+}
+
+crate::record! {
+    /// Lanczos's filter: sin(πx)/(πx), times the same function that is wider by the number of lobes, and cut where that is 0.
+    pub(crate) struct LanczosFilter + comment {
+        /// Radius, pixels.
+        lobes: Required<Whole<1, MOST_LOBES>> = "3",
+    }
+}
+
 crate::variants! {
     /// Pixel filter, sampled by importance so that every sample belongs to one pixel.
     pub(crate) enum FilterForm by "type" {
         "box" => Box(BoxFilter),
         "tent" => Tent(TentFilter),
         "gaussian" => Gaussian(GaussianFilter),
+        "mitchell" => Mitchell(MitchellFilter),
+        "lanczos" => Lanczos(LanczosFilter),
     }
+}
+
+fn mitchell(form: &MitchellFilter) -> Option<Filter> {
+    Some(Filter::Mitchell { radius_px: form.radius_px?.0, b: form.b?.0, c: form.c?.0 })
 }
 
 /// The film of a form, perhaps with another width and height.
@@ -162,6 +191,9 @@ pub(crate) fn film(
         Some(FilterForm::Box(_)) => Some(Filter::Box),
         Some(FilterForm::Tent(tent)) => tent.radius_px.map(|radius| Filter::Tent { radius_px: radius.0 }),
         Some(FilterForm::Gaussian(gaussian)) => gaussian.sigma_px.map(|sigma| Filter::Gaussian { sigma_px: sigma.0 }),
+        Some(FilterForm::Mitchell(form)) => mitchell(form),
+        // At most MOST_LOBES.
+        Some(FilterForm::Lanczos(form)) => form.lobes.map(|lobes| Filter::Lanczos { lobes: lobes.0 as u32 }),
     };
     let (width, height) = (form.width?.0, form.height?);
     if width * height.value.0 > MAX_PIXELS {

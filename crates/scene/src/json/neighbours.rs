@@ -117,7 +117,9 @@ pub const NEIGHBOURS: &[Neighbour] = &[
     row(Keyword, "thinlens realistic", Word("perspective", "its \"lens\" blurs what is out of focus")),
     word("ortho parallel", "orthographic"),
     word("triangle", "tent"),
-    word("mitchell lanczos sinc catmullrom blackmanharris", "gaussian"),
+    word("catmullrom", "mitchell"),
+    word("sinc", "lanczos"),
+    word("blackmanharris", "gaussian"),
     // Types of materials.
     word("diffuse matte bsdfdiffuse diffusebsdf", "lambert"),
     word("roughdiffuse", "oren-nayar"),

@@ -113,4 +113,18 @@ pub enum Filter {
         /// Standard deviation, pixels.
         sigma_px: f64,
     },
+    /// The cubic of Mitchell and Netravali, which is negative away from the pixel.
+    Mitchell {
+        /// Radius, pixels.
+        radius_px: f64,
+        /// How much of it is a B-spline.
+        b: f64,
+        /// How far it is negative.
+        c: f64,
+    },
+    /// Lanczos's windowed sine.
+    Lanczos {
+        /// Radius, pixels: the zeros of the sine to each side, with that of the window.
+        lobes: u32,
+    },
 }

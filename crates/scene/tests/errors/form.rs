@@ -182,6 +182,8 @@ fn numbers_out_of_range() {
             "{\"width\": 1, \"height\": 1, \"filter\": {\"type\": \"gaussian\", \"sigma_px\": «-1»}}",
             "$.film.filter.sigma_px",
         ),
+        ("{\"width\": 1, \"height\": 1, \"filter\": {\"type\": \"mitchell\", \"c\": «1.5»}}", "$.film.filter.c"),
+        ("{\"width\": 1, \"height\": 1, \"filter\": {\"type\": \"lanczos\", \"lobes\": «17»}}", "$.film.filter.lobes"),
     ] {
         error(Code::OutOfRange, path, Parts { film, ..RIGHT });
     }

@@ -28,7 +28,7 @@ fn camera_film_and_integrator() {
     assert_eq!(lens, &Some(ThinLens { radius_m: 0.0125, focus_distance_m: 2.0 }));
     assert_eq!(scene.camera.position_m, [1.0, 2.0, 3.0]);
     assert_eq!((scene.camera.forward, scene.camera.up), ([0.0, 0.0, -1.0], [0.0, 1.0, 0.0]));
-    let filter = Filter::Gaussian { sigma_px: 0.75 };
+    let filter = Filter::Mitchell { radius_px: 1.5, b: 0.25, c: 0.5 };
     let bands = Bands::new([400.0, 700.0, 10.0], [380.0, 780.0]).ok();
     assert!(bands.is_some());
     assert_eq!(scene.film, Film { width: 320, height: 200, filter, sample_border: false, stokes: true, bands });

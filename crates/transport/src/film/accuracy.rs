@@ -138,7 +138,7 @@ impl ErrorSum {
             return;
         };
         let y = pixel.xyz()[1];
-        let lit = pixel.sums().iter().filter(|sum| sum.xyz[1] > 0.0).count() as u64;
+        let lit = pixel.sums().iter().filter(|sum| sum.xyz[1] != 0.0).count() as u64;
         if lit > 0 {
             self.lit += lit;
             self.tried += u64::from(freedom) + 1;

@@ -1,11 +1,21 @@
-//! Pixel filters, sampled by importance: a sample belongs to one pixel and its weight is one (Ernst et al. 2006), so
-//! every pixel is a plain mean with an honest error.
+//! Pixel filters, sampled by importance: a sample belongs to one pixel (Ernst et al. 2006), so every pixel is a plain mean with an honest error.
+//!
+//! Offsets are drawn by the magnitude of the filter. Where the filter is nowhere negative, all samples have the weight one. Other filters are
+//! divided at their zeros. All samples of such a part have the same weight, and it is negative where the filter is.
 
 use etalon_optics::Real;
 use etalon_scene::Filter;
+use std::f64::consts::PI;
 
 /// Cells of the tabulated inverse distribution.
 const CELLS: usize = 512;
+/// The same of a filter that may be negative somewhere, whose parts have cells in proportion to their integrals. Its ends are flat: cells there
+/// are wide.
+const SIGNED_CELLS: usize = 8192;
+/// Steps of the integral of a part.
+const STEPS: usize = 64 * CELLS;
+/// Steps among which the zeros of a filter are sought, each narrower than a hundredth of a part.
+const STEPS_OF_SEARCH: usize = 8192;
 /// Where the Gaussian is cut, in standard deviations.
 const GAUSSIAN_CUT: f64 = 3.0;
 
@@ -14,19 +24,33 @@ const GAUSSIAN_CUT: f64 = 3.0;
 pub enum FilterSampler {
     /// Uniform over the pixel.
     Box,
-    /// Offsets at probabilities i/`CELLS`; the density is constant between them.
-    Table(Vec<f64>),
+    /// By a table.
+    Table(Table),
+}
+
+/// Cells of equal probability, in which density and weight are constant.
+#[derive(Clone, Debug)]
+pub struct Table {
+    /// The edges of the cells.
+    offsets: Vec<f64>,
+    /// What a sample of each cell counts for; empty if all count for one.
+    weights: Vec<f64>,
+    /// The sum of the weights of the cells before each, and of all: it ends with their number.
+    weights_below: Vec<f64>,
 }
 
 impl FilterSampler {
     /// A sampler of this filter, which is the product of one function in x and y.
     pub fn new(filter: &Filter) -> Self {
+        let reach = Self::reach_px(filter);
         match *filter {
             Filter::Box => Self::Box,
-            Filter::Tent { radius_px } => Self::tabulate(radius_px, |x| 1.0 - x / radius_px),
-            Filter::Gaussian { sigma_px } => {
-                Self::tabulate(GAUSSIAN_CUT * sigma_px, |x| (-0.5 * (x / sigma_px).powi(2)).exp())
+            Filter::Tent { radius_px } => Self::Table(Table::new(reach, |x| 1.0 - x / radius_px)),
+            Filter::Gaussian { sigma_px } => Self::Table(Table::new(reach, |x| (-0.5 * (x / sigma_px).powi(2)).exp())),
+            Filter::Mitchell { radius_px, b, c } => {
+                Self::Table(Table::signed(reach, |x| mitchell(2.0 * x / radius_px, b, c)))
             }
+            Filter::Lanczos { lobes } => Self::Table(Table::signed(reach, |x| lanczos(x, f64::from(lobes)))),
         }
     }
 
@@ -34,40 +58,22 @@ impl FilterSampler {
     pub(crate) fn reach_px(filter: &Filter) -> f64 {
         match *filter {
             Filter::Box => 0.5,
-            Filter::Tent { radius_px } => radius_px,
+            Filter::Tent { radius_px } | Filter::Mitchell { radius_px, .. } => radius_px,
             Filter::Gaussian { sigma_px } => GAUSSIAN_CUT * sigma_px,
+            Filter::Lanczos { lobes } => f64::from(lobes),
         }
     }
 
-    /// Inverts the distribution of the even function `f`, given on [0, radius].
-    fn tabulate(radius: f64, f: impl Fn(f64) -> f64) -> Self {
-        let steps = 64 * CELLS;
-        let at = |i: usize| (2.0 * i as f64 / steps as f64 - 1.0) * radius;
-        let mut cdf = vec![0.0];
-        for i in 0..steps {
-            cdf.push(cdf[i] + f((0.5 * (at(i) + at(i + 1))).abs()));
-        }
-        let total = cdf[steps];
-        let invert = |p: f64| {
-            let target = p * total;
-            let i = cdf.partition_point(|&c| c <= target).clamp(1, steps) - 1;
-            at(i) + (at(i + 1) - at(i)) * ((target - cdf[i]) / (cdf[i + 1] - cdf[i])).min(1.0)
-        };
-        Self::Table((0..=CELLS).map(|i| invert(i as f64 / CELLS as f64)).collect())
+    /// Whether samples have weights, since the filter is negative somewhere.
+    pub(crate) fn has_weights(&self) -> bool {
+        matches!(self, Self::Table(table) if !table.weights.is_empty())
     }
 
     /// The share of the offsets that are below one.
     fn share_below(&self, offset: f64) -> f64 {
         match self {
             Self::Box => (offset + 0.5).clamp(0.0, 1.0),
-            Self::Table(offsets) => match offsets.partition_point(|&edge| edge <= offset) {
-                0 => 0.0,
-                above if above == offsets.len() => 1.0,
-                above => {
-                    let (low, high) = (offsets[above - 1], offsets[above]);
-                    ((above - 1) as f64 + (offset - low) / (high - low)) / CELLS as f64
-                }
-            },
+            Self::Table(table) => table.share_below(offset),
         }
     }
 
@@ -76,53 +82,220 @@ impl FilterSampler {
         [self.share_below(-centre), self.share_below(size - centre)]
     }
 
+    /// The number that [`FilterSampler::offset`] takes for an offset on the film.
+    fn number_on_film(&self, u: f64, centre: f64, size: f64) -> f64 {
+        let [first, last] = self.on_film(centre, size);
+        (first + u * (last - first)).min(f64::ONE_MINUS_EPSILON)
+    }
+
     /// The offset in pixels for `u` in [0, 1) of a pixel with its centre there, among those that lead to a place on a film of `size` pixels.
     pub(crate) fn offset_on_film(&self, u: f64, centre: f64, size: f64) -> f64 {
-        let [first, last] = self.on_film(centre, size);
-        self.offset((first + u * (last - first)).min(f64::ONE_MINUS_EPSILON))
+        self.offset(self.number_on_film(u, centre, size))
     }
 
-    /// The density with which [`FilterSampler::offset_on_film`] draws an offset to a place on the film.
-    pub(crate) fn density_on_film(&self, offset: f64, centre: f64, size: f64) -> f64 {
-        let [first, last] = self.on_film(centre, size);
-        self.density(offset) / (last - first)
+    /// The weight of the sample that [`FilterSampler::offset_on_film`] draws.
+    pub(crate) fn weight_on_film(&self, u: f64, centre: f64, size: f64) -> f64 {
+        match self {
+            Self::Table(table) if !table.weights.is_empty() => {
+                let [first, last] = self.on_film(centre, size);
+                table.weight(self.number_on_film(u, centre, size)) / table.mean_weight(first, last)
+            }
+            _ => 1.0,
+        }
     }
 
-    /// The density with which offsets are drawn at one, in pixels: what light at this distance from the centre of a pixel counts there.
-    pub fn density(&self, offset: f64) -> f64 {
+    /// What light at this distance from the centre of a pixel counts there, where light from beyond the film does not count.
+    pub(crate) fn value_on_film(&self, offset: f64, centre: f64, size: f64) -> f64 {
+        let [first, last] = self.on_film(centre, size);
+        match self {
+            Self::Table(table) if !table.weights.is_empty() => {
+                self.value(offset) / ((last - first) * table.mean_weight(first, last))
+            }
+            _ => self.value(offset) / (last - first),
+        }
+    }
+
+    /// What light at this distance from the centre of a pixel, in pixels, counts there: the density of the offsets times their weight.
+    pub fn value(&self, offset: f64) -> f64 {
         match self {
             Self::Box => f64::from((-0.5..0.5).contains(&offset)),
-            Self::Table(offsets) => {
-                let above = offsets.partition_point(|&edge| edge <= offset);
-                if above == 0 || above == offsets.len() {
-                    return 0.0;
-                }
-                1.0 / (CELLS as f64 * (offsets[above] - offsets[above - 1]))
-            }
+            Self::Table(table) => table.value(offset),
         }
     }
 
     /// The offset in pixels for `u` in [0, 1).
     pub fn offset(&self, u: f64) -> f64 {
         match self {
-            Self::Table(offsets) => {
-                let x = u * CELLS as f64;
-                let i = x as usize;
-                offsets[i] + (x - i as f64) * (offsets[i + 1] - offsets[i])
-            }
+            Self::Table(table) => table.offset(u),
             Self::Box => u - 0.5,
         }
     }
+
+    /// What the sample counts for whose offset is drawn by `u`.
+    pub fn weight(&self, u: f64) -> f64 {
+        match self {
+            Self::Table(table) => table.weight(u),
+            Self::Box => 1.0,
+        }
+    }
+}
+
+impl Table {
+    /// Of the even function `f`, given on [0, radius], that is positive there.
+    fn new(radius: f64, f: impl Fn(f64) -> f64) -> Self {
+        let offsets = tabulate(0.0, radius, CELLS, f);
+        Self { offsets, weights: Vec::new(), weights_below: Vec::new() }
+    }
+
+    /// Of the even function `f`, given on [0, radius], that may be negative somewhere.
+    fn signed(radius: f64, f: impl Fn(f64) -> f64) -> Self {
+        let zeros = zeros(radius, &f);
+        let is_positive = zeros.is_empty();
+        let mut edges: Vec<f64> = zeros.iter().rev().map(|zero| -zero).collect();
+        edges.insert(0, -radius);
+        edges.extend(zeros.into_iter().chain([radius]));
+        let parts = || edges.windows(2).map(|edges| [0.5 * (edges[0] + edges[1]), 0.5 * (edges[1] - edges[0])]);
+        let integrals: Vec<f64> = parts().map(|[middle, half]| integral(middle, half, &f)).collect();
+        let magnitude: f64 = integrals.iter().map(|integral| integral.abs()).sum();
+        let total: f64 = integrals.iter().sum();
+        let cells: Vec<usize> = integrals
+            .iter()
+            .map(|integral| (SIGNED_CELLS as f64 * integral.abs() / magnitude).round().max(1.0) as usize)
+            .collect();
+        let count: usize = cells.iter().sum();
+        let (mut offsets, mut weights, mut weights_below) = (vec![-radius], Vec::new(), vec![0.0]);
+        for (([middle, half], integral), cells) in parts().zip(integrals).zip(cells) {
+            offsets.extend_from_slice(&tabulate(middle, half, cells, &f)[1..]);
+            // Each cell is drawn as often as any other.
+            let weight = integral / total * (count as f64 / cells as f64);
+            for _ in 0..cells {
+                weights.push(weight);
+                weights_below.push(weights_below[weights_below.len() - 1] + weight);
+            }
+        }
+        if is_positive {
+            (weights, weights_below) = (Vec::new(), Vec::new());
+        }
+        Self { offsets, weights, weights_below }
+    }
+
+    fn cells(&self) -> usize {
+        self.offsets.len() - 1
+    }
+
+    fn share_below(&self, offset: f64) -> f64 {
+        match self.offsets.partition_point(|&edge| edge <= offset) {
+            0 => 0.0,
+            above if above == self.offsets.len() => 1.0,
+            above => {
+                let (low, high) = (self.offsets[above - 1], self.offsets[above]);
+                ((above - 1) as f64 + (offset - low) / (high - low)) / self.cells() as f64
+            }
+        }
+    }
+
+    fn value(&self, offset: f64) -> f64 {
+        let above = self.offsets.partition_point(|&edge| edge <= offset);
+        if above == 0 || above == self.offsets.len() {
+            return 0.0;
+        }
+        let density = 1.0 / (self.cells() as f64 * (self.offsets[above] - self.offsets[above - 1]));
+        self.weights.get(above - 1).map_or(density, |weight| weight * density)
+    }
+
+    fn offset(&self, u: f64) -> f64 {
+        let x = u * self.cells() as f64;
+        let i = x as usize;
+        self.offsets[i] + (x - i as f64) * (self.offsets[i + 1] - self.offsets[i])
+    }
+
+    fn weight(&self, u: f64) -> f64 {
+        self.weights.get((u * self.cells() as f64) as usize).copied().unwrap_or(1.0)
+    }
+
+    /// The mean weight of the samples that are drawn by numbers between two.
+    fn mean_weight(&self, first: f64, last: f64) -> f64 {
+        let below = |u: f64| {
+            let x = u * self.cells() as f64;
+            let i = (x as usize).min(self.cells() - 1);
+            self.weights_below[i] + (x - i as f64) * self.weights[i]
+        };
+        (below(last) - below(first)) / (self.cells() as f64 * (last - first))
+    }
+}
+
+/// Places of the steps of the part of a filter that reaches `half` to both sides of `middle`.
+fn step(i: usize, middle: f64, half: f64) -> f64 {
+    middle + (2.0 * i as f64 / STEPS as f64 - 1.0) * half
+}
+
+/// The integral over such a part of the even function `f`, by midpoints.
+fn integral(middle: f64, half: f64, f: impl Fn(f64) -> f64) -> f64 {
+    let at = |i| step(i, middle, half);
+    (0..STEPS).map(|i| f((0.5 * (at(i) + at(i + 1))).abs()) * (at(i + 1) - at(i))).sum()
+}
+
+/// The edges of cells over which the even function `f` has equal integrals, in a part where it does not change its sign.
+fn tabulate(middle: f64, half: f64, cells: usize, f: impl Fn(f64) -> f64) -> Vec<f64> {
+    let at = |i: usize| step(i, middle, half);
+    let mut cdf = vec![0.0];
+    for i in 0..STEPS {
+        cdf.push(cdf[i] + f((0.5 * (at(i) + at(i + 1))).abs()).abs());
+    }
+    let total = cdf[STEPS];
+    let invert = |p: f64| {
+        let target = p * total;
+        let i = cdf.partition_point(|&c| c <= target).clamp(1, STEPS) - 1;
+        at(i) + (at(i + 1) - at(i)) * ((target - cdf[i]) / (cdf[i + 1] - cdf[i])).min(1.0)
+    };
+    (0..=cells).map(|i| invert(i as f64 / cells as f64)).collect()
+}
+
+/// Where a function changes its sign between 0 and `radius`, by bisection.
+fn zeros(radius: f64, f: impl Fn(f64) -> f64) -> Vec<f64> {
+    // The middles of steps, lest one of them is a zero.
+    let at = |i: usize| (i as f64 + 0.5) / STEPS_OF_SEARCH as f64 * radius;
+    let changes = (1..STEPS_OF_SEARCH).filter(|&i| f(at(i - 1)) * f(at(i)) < 0.0);
+    let bisect = |i: usize| {
+        let (mut low, mut high) = (at(i - 1), at(i));
+        for _ in 0..f64::MANTISSA_DIGITS {
+            let middle = 0.5 * (low + high);
+            if f(low) * f(middle) > 0.0 { low = middle } else { high = middle }
+        }
+        0.5 * (low + high)
+    };
+    changes.map(bisect).collect()
+}
+
+/// The cubic of Mitchell and Netravali (1988) at a distance of up to 2.
+fn mitchell(x: f64, b: f64, c: f64) -> f64 {
+    let [cubic, square, linear, constant] = if x < 1.0 {
+        [12.0 - 9.0 * b - 6.0 * c, -18.0 + 12.0 * b + 6.0 * c, 0.0, 6.0 - 2.0 * b]
+    } else {
+        [-b - 6.0 * c, 6.0 * b + 30.0 * c, -12.0 * b - 48.0 * c, 8.0 * b + 24.0 * c]
+    };
+    (((cubic * x + square) * x + linear) * x + constant) / 6.0
+}
+
+/// The sine over its argument, times the same that is as wide as the filter: sin(πx)/(πx) · sin(πx/n)/(πx/n).
+fn lanczos(x: f64, lobes: f64) -> f64 {
+    let sinc = |x: f64| if x == 0.0 { 1.0 } else { (PI * x).sin() / (PI * x) };
+    sinc(x) * sinc(x / lobes)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// The share of the offsets between two is the integral of the density.
+    const MITCHELL: Filter = Filter::Mitchell { radius_px: 2.0, b: 1.0 / 3.0, c: 1.0 / 3.0 };
+    const CATMULL_ROM: Filter = Filter::Mitchell { radius_px: 1.0, b: 0.0, c: 0.5 };
+    const LANCZOS: Filter = Filter::Lanczos { lobes: 3 };
+
+    /// The weight of the offsets between two is the integral of the filter.
     #[test]
-    fn as_many_offsets_are_drawn_as_the_density_says() {
-        for filter in [Filter::Box, Filter::Tent { radius_px: 1.5 }, Filter::Gaussian { sigma_px: 0.5 }] {
+    fn as_many_offsets_are_drawn_as_the_filter_says() {
+        let positive = [Filter::Box, Filter::Tent { radius_px: 1.5 }, Filter::Gaussian { sigma_px: 0.5 }];
+        for filter in positive.into_iter().chain([MITCHELL, CATMULL_ROM, LANCZOS]) {
             let sampler = FilterSampler::new(&filter);
             let reach = FilterSampler::reach_px(&filter);
             let steps = 20_000;
@@ -130,12 +303,12 @@ mod tests {
             let at = |step: i32| -reach + (f64::from(step) + 0.5) * width;
             let mut drawn_below = 0.0;
             for step in 0..steps {
-                drawn_below += sampler.density(at(step)) * width;
+                drawn_below += sampler.value(at(step)) * width;
                 if step % 1000 == 999 {
                     let edge = at(step) + 0.5 * width;
-                    let share = f64::from(
-                        (0..10_000).filter(|i| sampler.offset((f64::from(*i) + 0.5) / 1e4) < edge).count() as u32,
-                    ) / 1e4;
+                    let numbers = (0..10_000).map(|i| (f64::from(i) + 0.5) / 1e4);
+                    let share =
+                        numbers.filter(|u| sampler.offset(*u) < edge).map(|u| sampler.weight(u)).sum::<f64>() / 1e4;
                     // A ten thousandth of the offsets lies between two of those counted; a cell's end may lie within a step.
                     assert!(
                         (drawn_below - share).abs() < 1e-3,
@@ -143,7 +316,7 @@ mod tests {
                     );
                 }
             }
-            assert_eq!(sampler.density(reach * 1.001), 0.0);
+            assert_eq!(sampler.value(reach * 1.001), 0.0);
         }
     }
 
@@ -166,7 +339,7 @@ mod tests {
                 assert!((share - exact).abs() < 2e-4, "{centre} of {size}, below {offset}: {share} is not {exact}");
                 let height = 1.0 - 0.5 * offset.abs();
                 let density = height / (tent(high) - tent(low));
-                let found = sampler.density_on_film(offset, centre, size);
+                let found = sampler.value_on_film(offset, centre, size);
                 // It is constant in a cell, which is 2/(512 h) wide where the tent is h high. Over half of that the tent changes by this part.
                 let cell = 1.0 / (2.0 * CELLS as f64 * height * height);
                 assert!(
@@ -189,13 +362,64 @@ mod tests {
             (Filter::Tent { radius_px: 1.0 }, 1.0 / 6.0),
             (Filter::Tent { radius_px: 2.0 }, 4.0 / 6.0),
             (Filter::Gaussian { sigma_px: 0.5 }, 0.25 * 0.973_335_6),
+            // (2 − 4c + 3b)/15 in units of half the radius, term by term: that of the cubic B-spline is 1/3.
+            (MITCHELL, 1.0 / 9.0),
+            (Filter::Mitchell { radius_px: 2.0, b: 1.0, c: 0.0 }, 1.0 / 3.0),
         ] {
             let sampler = FilterSampler::new(&filter);
-            let offsets: Vec<f64> = (0..n).map(|i| sampler.offset((f64::from(i) + 0.5) / f64::from(n))).collect();
-            let mean = offsets.iter().sum::<f64>() / f64::from(n);
-            let second = offsets.iter().map(|x| x * x).sum::<f64>() / f64::from(n);
+            let drawn = (0..n).map(|i| (f64::from(i) + 0.5) / f64::from(n));
+            let offsets: Vec<[f64; 2]> = drawn.map(|u| [sampler.offset(u), sampler.weight(u)]).collect();
+            let sum = offsets.iter().map(|[_, weight]| weight).sum::<f64>() / f64::from(n);
+            let mean = offsets.iter().map(|[x, weight]| weight * x).sum::<f64>() / f64::from(n);
+            let second = offsets.iter().map(|[x, weight]| weight * x * x).sum::<f64>() / f64::from(n);
+            assert!((sum - 1.0).abs() < 1e-4, "{filter:?}: {sum}");
             assert!(mean.abs() < 1e-6, "{filter:?}: {mean}");
             assert!((second / variance - 1.0).abs() < 1e-3, "{filter:?}: {second} is not {variance}");
+        }
+    }
+
+    /// The values of a table are those of the filter over its integral, with its sign. They are constant in a cell.
+    #[test]
+    fn values_are_those_of_the_filter() {
+        for (filter, f) in [
+            (MITCHELL, Box::new(|x| mitchell(x, 1.0 / 3.0, 1.0 / 3.0)) as Box<dyn Fn(f64) -> f64>),
+            (CATMULL_ROM, Box::new(|x| 2.0 * mitchell(2.0 * x, 0.0, 0.5))),
+            // Its integral, by Gauss-Legendre quadrature.
+            (LANCZOS, Box::new(|x| lanczos(x, 3.0) / 0.997_055_332_9)),
+        ] {
+            let (sampler, reach) = (FilterSampler::new(&filter), FilterSampler::reach_px(&filter));
+            for i in 1..100 {
+                let x = f64::from(i) / 100.0 * reach;
+                let (exact, found) = (f(x), sampler.value(x));
+                // At a zero of slope m the first cell ends at h with m h²/2 = M/8192, M the integral of the magnitude, and its value is m h/2: 0.012
+                // where m is 2 and M 1.17.
+                assert!((exact - found).abs() < 0.0125, "{filter:?} at {x}: {found} is not {exact}");
+                assert!((sampler.value(-x) - found).abs() < 0.025, "{filter:?} at −{x}");
+            }
+        }
+    }
+
+    /// What is left of a filter on a film is all of it: its weights have the mean one, and its values the integral one.
+    #[test]
+    fn a_filter_with_negative_parts_is_whole_on_every_film() {
+        for filter in [MITCHELL, CATMULL_ROM, LANCZOS] {
+            let (sampler, reach) = (FilterSampler::new(&filter), FilterSampler::reach_px(&filter));
+            for (centre, size) in [(0.5_f64, 1.0_f64), (0.5, 9.0), (1.5, 9.0), (2.5, 3.0), (4.5, 9.0)] {
+                let n = 100_000;
+                let numbers = || (0..n).map(|i| (f64::from(i) + 0.5) / f64::from(n));
+                let mean = numbers().map(|u| sampler.weight_on_film(u, centre, size)).sum::<f64>() / f64::from(n);
+                assert!((mean - 1.0).abs() < 1e-4, "{filter:?}, {centre} of {size}: weights {mean}");
+                let [low, high] = [(-centre).max(-reach), (size - centre).min(reach)];
+                let value = |u: f64| sampler.value_on_film(low + u * (high - low), centre, size);
+                let integral = numbers().map(value).sum::<f64>() * (high - low) / f64::from(n);
+                assert!((integral - 1.0).abs() < 1e-3, "{filter:?}, {centre} of {size}: integral {integral}");
+                // Weight by weight, what is drawn is what is stated.
+                let at = |u: f64| low + u * (high - low);
+                let below = numbers().filter(|u| at(*u) < 0.3).map(value).sum::<f64>() * (high - low) / f64::from(n);
+                let drawn = numbers().filter(|u| sampler.offset_on_film(*u, centre, size) < 0.3);
+                let drawn = drawn.map(|u| sampler.weight_on_film(u, centre, size)).sum::<f64>() / f64::from(n);
+                assert!((below - drawn).abs() < 1e-3, "{filter:?}, {centre} of {size}: {drawn} is not {below}");
+            }
         }
     }
 }

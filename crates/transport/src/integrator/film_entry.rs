@@ -79,11 +79,17 @@ impl<'a> FilmEntry<'a> {
         counters: &mut Counters,
     ) {
         counters.paths += 1;
+        let weight = self.prepared.filter_weight(id.x, id.y, id.sample);
+        if let Some(weight) = weight {
+            xyz = xyz.map(|v| v * weight);
+        }
+        // These come with the filter's weight.
         if let Some(of_light_paths) = self.sums.splats.of(id.x, id.y, id.sample) {
             (0..3).for_each(|c| xyz[c] += of_light_paths[c]);
         }
         let stokes_xyz =
             received.stokes.map(|stokes| stokes.map(|s| M::to_xyz(self.prepared, &received.wavelengths, s)));
+        let weight = weight.unwrap_or(1.0);
         let finite = |xyz: [f64; 3]| xyz.iter().all(|v| v.is_finite());
         if !(finite(xyz) && stokes_xyz.is_none_or(|stokes| stokes.into_iter().all(finite))) {
             counters.record_nonfinite(NonFinite { y: id.y, x: id.x, sample: id.sample });
@@ -92,14 +98,14 @@ impl<'a> FilmEntry<'a> {
         let replicate = id.pixel_samples * self.replicates + id.sample as usize % self.replicates;
         self.sums.xyz[replicate].add(xyz);
         if let (Some(stokes), Some(sum)) = (stokes_xyz, self.sums.stokes.get_mut(replicate)) {
-            (0..3).for_each(|s| (0..3).for_each(|c| sum[s][c] += stokes[s][c]));
+            (0..3).for_each(|s| (0..3).for_each(|c| sum[s][c] += stokes[s][c] * weight));
         }
         if let Some((bands, per_replicate)) = self.bands {
             let per_parameter = per_replicate / self.prepared.band_parameters() as usize;
             let sums = &mut self.sums.bands[replicate * per_replicate..][..per_replicate];
             let parameters = std::iter::once(received.radiance).chain(received.stokes.into_iter().flatten());
             for (sums, parameter) in sums.chunks_exact_mut(per_parameter).zip(parameters) {
-                M::to_bands(bands, &received.wavelengths, parameter, sums);
+                M::to_bands(bands, &received.wavelengths, parameter * weight, sums);
             }
         }
     }

@@ -56,6 +56,29 @@ pub(crate) struct FirstSurface<'a> {
     pub u: [f64; 3],
 }
 
+impl Prepared {
+    /// The numbers of a sample by random numbers of a seed.
+    fn sampler(&self, seed: u64, x: u32, y: u32, sample: u32) -> Sampler {
+        let integrator = &self.scene.integrator;
+        let pixel = u64::from(y) << 32 | u64::from(x);
+        Sampler::new(integrator.sampler, seed, pixel, sample, integrator.replicates)
+    }
+
+    /// What a sample of the picture counts for in its pixel, if the filter is negative somewhere.
+    #[inline(always)]
+    pub(crate) fn filter_weight(&self, x: u32, y: u32, sample: u32) -> Option<f64> {
+        self.filter.has_weights().then(|| {
+            let (on_film, _) = film_and_lens(self.sampler(self.scene.integrator.seed, x, y, sample).set(0));
+            let film = &self.scene.film;
+            let weight = |pixel: u32, size: u32, u: f64| match film.sample_border {
+                true => self.filter.weight(u),
+                false => self.filter.weight_on_film(u, f64::from(pixel) + 0.5, f64::from(size)),
+            };
+            weight(x, film.width, on_film[0]) * weight(y, film.height, on_film[1])
+        })
+    }
+}
+
 /// One scene.
 pub(crate) struct Tracer<'a> {
     pub(crate) prepared: &'a Prepared,
@@ -113,9 +136,7 @@ impl<'a> Tracer<'a> {
     }
 
     pub(crate) fn sampler(&self, x: u32, y: u32, sample: u32) -> Sampler {
-        let integrator = &self.prepared.scene.integrator;
-        let pixel = u64::from(y) << 32 | u64::from(x);
-        Sampler::new(integrator.sampler, self.seed, pixel, sample, integrator.replicates)
+        self.prepared.sampler(self.seed, x, y, sample)
     }
 
     /// The sampler of what the pixels of a block have in common.

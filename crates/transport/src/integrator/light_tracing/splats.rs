@@ -132,7 +132,7 @@ impl SampleSums {
 }
 
 impl Prepared {
-    /// What each pixel of a rectangle receives of a light path: by the density of its filter.
+    /// What each pixel of a rectangle receives of a light path: by its filter.
     fn spread(&self, connection: &Connection, rect: PixelRect, splats: &mut Vec<Splat>) {
         let reach = self.filter_reach_px();
         // The centre of a pixel is half a pixel after its number.
@@ -142,11 +142,11 @@ impl Prepared {
             from as i64..to as i64 + 1
         };
         let film = &self.scene.film;
-        let density = |place: f64, pixel: i64, size: u32| {
+        let value = |place: f64, pixel: i64, size: u32| {
             let centre = pixel as f64 + 0.5;
             match film.sample_border {
-                true => self.filter.density(place - centre),
-                false => self.filter.density_on_film(place - centre, centre, f64::from(size)),
+                true => self.filter.value(place - centre),
+                false => self.filter.value_on_film(place - centre, centre, f64::from(size)),
             }
         };
         let [column, row] = connection.place_px;
@@ -156,10 +156,10 @@ impl Prepared {
             return;
         }
         for y in near(row, rect.y0, rect.y1) {
-            let of_row = density(row, y, film.height);
+            let of_row = value(row, y, film.height);
             for x in near(column, rect.x0, rect.x1) {
-                let share = of_row * density(column, x, film.width);
-                if share > 0.0 {
+                let share = of_row * value(column, x, film.width);
+                if share != 0.0 {
                     let pixel = (y as u32 - rect.y0) * (rect.x1 - rect.x0) + (x as u32 - rect.x0);
                     splats.push(Splat { pixel, xyz: connection.xyz.map(|v| v * share) });
                 }

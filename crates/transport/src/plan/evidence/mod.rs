@@ -90,6 +90,8 @@ pub(super) fn of(name: EffectName, scene: &Scene) -> Result<String, String> {
             Filter::Box => nothing("each pixel is a square (box filter)"),
             Filter::Tent { radius_px } => Ok(format!("film: tent of radius {radius_px} px")),
             Filter::Gaussian { sigma_px } => Ok(format!("film: Gaussian of σ {sigma_px} px")),
+            Filter::Mitchell { radius_px, .. } => Ok(format!("film: Mitchell's filter of radius {radius_px} px")),
+            Filter::Lanczos { lobes } => Ok(format!("film: Lanczos's filter of radius {lobes} px")),
         },
         EffectName::Bands => match &scene.film.bands {
             None => nothing("the film keeps only the colour"),
