@@ -37,6 +37,8 @@ fn scenes() -> Vec<Value> {
         with("/camera", orthographic),
         with("/film/width", json!(8)),
         with("/film", json!({ "width": 8, "height": 8, "filter": { "type": "tent" } })),
+        with("/film", json!({ "width": 8, "height": 8, "filter": { "type": "gaussian" } })),
+        with("/film", json!({ "width": 8, "height": 8, "filter": { "type": "lanczos" } })),
         shape(json!({ "type": "mesh", "file": "ball.ply" })),
         medium("N-BK7"),
         medium("N-SF11"),

@@ -91,6 +91,30 @@ fn many_paths_at_once_leave_the_film_of_one_at_a_time_with_filters_that_are_nega
     }
 }
 
+/// Camera rays go straight past lamps, in a medium and where pixels share paths.
+#[test]
+fn many_paths_at_once_leave_the_film_of_one_at_a_time_where_the_camera_sees_no_lights() {
+    for (medium, path_reuse) in
+        [(r#""medium": { "scattering_per_m": 0.05, "absorption_per_m": 0.02 },"#, "none"), ("", "none"), ("", "2x2")]
+    {
+        let text = format!(
+            r#"{{
+            "etalon": 1, "film": {{ "width": 22, "height": 17 }}, {medium}
+            "integrator": {{ "spp": 4, "hide_lights": true, "path_reuse": "{path_reuse}" }},
+            "camera": {{ "type": "perspective", "position_m": [0, 1, 4], "look_at_m": [0, 0, 0], "vertical_fov_deg": 45 }},
+            "lights": [{{ "type": "environment", "radiance": 0.5 }}],
+            "objects": [
+                {{ "shape": {{ "type": "sphere", "center_m": [0, 0, 0], "radius_m": 1 }}, "material": {{ "type": "lambert", "reflectance": 0.5 }} }},
+                {{ "shape": {{ "type": "sphere", "center_m": [-1, 0, 1], "radius_m": 0.4 }}, "material": {{ "type": "mirror" }} }},
+                {{ "shape": {{ "type": "sphere", "center_m": [0.3, 0.8, 2], "radius_m": 0.4 }}, "material": {{ "type": "black" }},
+                   "emission": {{ "radiance": 20 }} }}
+            ] }}"#
+        );
+        let scene = parse_with_files(&text, "hidden", &[], None).unwrap_or_else(|errors| panic!("{errors}")).scene;
+        agrees(&format!("{medium} {path_reuse}"), &scene, &Study::default());
+    }
+}
+
 /// In blends, on one side, turned, below lamps, with and without polarisation.
 #[test]
 fn many_paths_at_once_leave_the_film_of_one_at_a_time_on_measured_surfaces() {

@@ -139,6 +139,7 @@ CASES = [
     of("film-crop", options=("--crop", "28,12,40,48")),
     *(of("filter", filter=f) for f in ("tent", "gaussian", "mitchell", "catmullrom", "lanczos")),
     of("nested-integrator"),
+    *(of("hide-emitters", integrator=i, lamp=l) for i in ("path", "volpath") for l in ("rectangle", "cube")),
     of("fog", integrator="volpath", depth=32),
     of("hollow", integrator="volpath", depth=32),
     # Shadow rays do not reach into glass: under the sky alone there is little noise.

@@ -57,7 +57,7 @@ impl<'a> Walk<'a, '_, '_> {
             self.builder.integrator.insert("roulette".to_owned(), json!(false));
         }
         if element.flag("hide_emitters")?.unwrap_or(false) {
-            self.builder.leave_out(&element.place, "hide_emitters is ignored: the camera sees lamps and skies");
+            self.builder.integrator.insert("hide_lights".to_owned(), json!(true));
         }
         element.list_unused(self.builder);
         Ok(())

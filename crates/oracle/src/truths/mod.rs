@@ -34,6 +34,7 @@ mod furnaces;
 mod glass;
 mod gratings;
 mod guided;
+mod hidden_lights;
 mod illumination;
 mod image_files;
 mod images;
@@ -369,8 +370,9 @@ pub fn truths() -> Vec<Truth> {
     LIST.clone()
 }
 
-const GROUPS: [fn() -> Vec<Truth>; 59] = [
+const GROUPS: [fn() -> Vec<Truth>; 60] = [
     lamps_behind_glass::truths,
+    hidden_lights::truths,
     panes::truths,
     furnaces::truths,
     beckmann::truths,

@@ -20,6 +20,8 @@ crate::record! {
         max_depth: Required<Nullable<Whole<1, { u32::MAX as u64 }>>> = "null",
         /// Whether `max_depth` counts the way straight through a thin pane or a polarising sheet.
         count_panes: Required<bool> = "true",
+        /// Whether the camera does not see lamps and skies directly. They light the scene all the same.
+        hide_lights: Required<bool> = "false",
         /// Whether Russian roulette may end a path.
         roulette: Required<bool> = "true",
         /// How direct light is found.
@@ -121,6 +123,7 @@ pub(crate) fn integrator(form: &IntegratorForm, wavelength_range_nm: Option<[f64
             Nullable::Value(depth) => Some(depth.0 as u32),
         },
         count_panes: form.count_panes?,
+        hide_lights: form.hide_lights?,
         roulette: form.roulette?,
         light_sampling: form.light_sampling?,
         light_selection: form.light_selection?,

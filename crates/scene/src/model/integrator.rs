@@ -15,6 +15,8 @@ pub struct Integrator {
     pub max_depth: Option<u32>,
     /// Whether `max_depth` counts the way straight through a thin pane or a polarising sheet as an edge.
     pub count_panes: bool,
+    /// Whether the camera sees straight past lamps and skies, which light the scene all the same.
+    pub hide_lights: bool,
     /// Whether Russian roulette may end a path.
     pub roulette: bool,
     /// How direct light is found.

@@ -250,11 +250,17 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         let vertex = match met {
             Intersection::Surface(vertex) => vertex,
             Intersection::Nothing(sky) => {
-                self.add_environments(world, ray, sky, counters, observer);
+                if !(world.hides_lights && self.vertex == 0) {
+                    self.add_environments(world, ray, sky, counters, observer);
+                }
                 observer.end(End::Escaped);
                 return Arrival::Escaped;
             }
         };
+        if world.hides_lights && self.vertex == 0 && vertex.surface.shines() && self.passes < MOST_VERTICES {
+            self.pass(vertex);
+            return Arrival::Passed;
+        }
         observer.vertex(self.vertex, vertex.point.position, vertex.surface.object, self.beta);
         self.add_emission(world, ray, vertex, observer);
         if world.masks && self.passes(world, vertex, sampler) {
@@ -319,7 +325,6 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         }
         // What is left of the number is uniform again.
         self.u_mask = Some((u - opacity) / (1.0 - opacity));
-        self.passes += 1;
         let shines = vertex.surface.shines();
         if (opacity > 0.0 || shines)
             && let Step::Shared { since, .. } = &mut self.step
@@ -332,9 +337,16 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
                 }
             }
         }
+        self.pass(vertex);
+        true
+    }
+
+    /// Passes a surface on the same ray.
+    #[inline(always)]
+    fn pass(&mut self, vertex: &SurfaceInteraction<'a>) {
+        self.passes += 1;
         self.passed_at = Some(vertex.point.position);
         self.walk.pass(vertex, &mut self.stack);
-        true
     }
 
     /// Forgets how far the path has come along its ray.

@@ -99,7 +99,7 @@ impl<'a> Tracer<'a> {
         // A meter's plate is a vertex that the limit on depth does not count.
         let of_receiver = u32::from(!prepared.receivers.is_empty());
         let max_depth = integrator.max_depth.map_or(MOST_VERTICES, |depth| depth.saturating_add(of_receiver));
-        let masks = plan.runs(EffectName::Masks) || prepared.has_boundaries;
+        let masks = plan.runs(EffectName::Masks) || prepared.has_boundaries || integrator.hide_lights;
         Self {
             prepared,
             seed: integrator.seed,
@@ -121,6 +121,7 @@ impl<'a> Tracer<'a> {
                     && prepared.lights.lights().iter().any(Light::lights_parts),
                 weigh_hits: prepared.lights.can_be_met() || plan.runs(EffectName::Mis),
                 max_depth: max_depth.min(MOST_VERTICES),
+                hides_lights: integrator.hide_lights,
                 counts_panes: integrator.count_panes || integrator.max_depth.is_none(),
                 roulette: integrator.roulette,
                 fluoresces: plan.runs(EffectName::Fluorescence),
@@ -193,7 +194,8 @@ impl<'a> Tracer<'a> {
         for _ in 0..MOST_VERTICES {
             let met = self.world.intersect(&ray, &mut walk, &mut stack, counters)?;
             let (hit, point, surface) = (&met.hit, &met.point, &met.surface);
-            let opacity = if self.world.masks { met.opacity(&self.world) } else { 1.0 };
+            let is_hidden = self.world.hides_lights && met.surface.shines();
+            let opacity = if is_hidden { 0.0 } else { met.share_that_stops(&self.world) };
             if u_mask >= opacity {
                 u_mask = (u_mask - opacity) / (1.0 - opacity);
                 walk.pass(&met, &mut stack);

@@ -36,6 +36,8 @@ pub(crate) struct World<'a> {
     pub max_depth: u32,
     /// Whether the way straight through a pane counts as an edge.
     pub counts_panes: bool,
+    /// Whether camera rays go straight past lamps and find no light of skies.
+    pub hides_lights: bool,
     pub roulette: bool,
     /// Whether some surface gives light back at other wavelengths.
     pub fluoresces: bool,

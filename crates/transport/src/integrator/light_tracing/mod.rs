@@ -70,6 +70,7 @@ pub(crate) fn find_specular_objects(prepared: &Prepared) -> Result<SpecularObjec
         (needs(EffectName::NestedDielectrics), "solids with priorities are nested"),
         (needs(EffectName::Absorption) || needs(EffectName::Scattering), "a medium absorbs or scatters light"),
         (prepared.has_boundaries, "a surface is the boundary of a medium"),
+        (prepared.scene.integrator.hide_lights, "the camera sees past lamps"),
         (needs(EffectName::Masks), "a surface lets a part of the light pass"),
         (needs(EffectName::Motion), "something moves"),
         (needs(EffectName::Fluorescence), "a surface fluoresces"),
