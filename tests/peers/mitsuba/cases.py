@@ -119,6 +119,10 @@ CASES = [
     *(of("mesh-colours", attribute=f"{of_what}_color") for of_what in ("vertex", "face")),
     of("instances"),
     *(of("polarisers", variant=POLARISED, theta=theta, integrator="volpath", depth=32) for theta in (30, 65)),
+    *(
+        of("polarisers-mesh", variant=POLARISED, mesh=mesh, theta=65, integrator="volpath", depth=32)
+        for mesh in ("turned", "bare")
+    ),
     of("retarder", TILTED, variant=POLARISED, delta=90, integrator="volpath", depth=32),
     of("point"),
     of("spot", beam=16),

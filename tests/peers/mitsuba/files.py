@@ -129,7 +129,19 @@ def write_measured(path, phi_i):
     path.write_bytes(head + b"".join(field.tobytes() for field in fields.values()))
 
 
+def write_panes(folder):
+    """A square of two triangles, with texture coordinates that are turned by 35°, and without."""
+    points = [(-1, -1, 0), (1, -1, 0), (-1, 1, 0), (1, 1, 0)]
+    turn = np.radians(35)
+    vertices = "".join(f"v {x} {y} {z}\n" for x, y, z in points)
+    turned = [(x * np.cos(turn) + y * np.sin(turn), y * np.cos(turn) - x * np.sin(turn)) for x, y, _ in points]
+    (folder / "pane-bare.obj").write_text(vertices + "f 1 2 3\nf 2 4 3\n")
+    coordinates = "".join(f"vt {u:.7f} {v:.7f}\n" for u, v in turned)
+    (folder / "pane-turned.obj").write_text(vertices + coordinates + "f 1/1 2/2 3/3\nf 2/2 4/4 3/3\n")
+
+
 def write_all(folder):
+    write_panes(folder)
     rng = np.random.default_rng(7)
     write_exr(folder / "picture.exr", {c: t for t in [rng.uniform(0.1, 0.9, (5, 7))] for c in "RGB"})
     write_exr(folder / "sky.exr", {c: t for t in [rng.uniform(0.1, 1, (6, 12)) ** 2] for c in "RGB"})

@@ -15,6 +15,7 @@ mod relief;
 mod serialized;
 mod shape;
 mod sheet;
+mod sheet_mesh;
 mod slide;
 mod spot;
 mod transform;

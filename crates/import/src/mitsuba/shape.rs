@@ -2,6 +2,7 @@
 
 use std::rc::Rc;
 
+use etalon_scene::Mesh as SceneMesh;
 use etalon_scene::mesh::{Part, read_obj, read_ply, smooth_normals};
 use glam::DAffine3;
 use serde_json::{Value, json};
@@ -32,7 +33,7 @@ pub(super) struct Mesh {
 
 /// How a mesh is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum MeshFormat {
+pub(super) enum MeshFormat {
     Obj,
     Ply,
     /// The mesh of this number.
@@ -239,6 +240,11 @@ impl<'a> Walk<'a, '_, '_> {
         let flip_v = element.flag("flip_tex_coords")?.unwrap_or(format == MeshFormat::Obj);
         let attribute = attribute_of(&dressed.look.material);
         let flat = element.flag("face_normals")?.unwrap_or(false);
+        if let Some(sheet) = self.sheet_of(dressed)
+            && self.mesh_of_sheet(&file, (format, flat), dressed, &sheet, place)?
+        {
+            return Ok(());
+        }
         let own = dressed.look.material.as_str().and_then(|name| self.builder.materials.get(name));
         let shows_image = has_image(own.unwrap_or(&dressed.look.material))
             || dressed.look.detail.contains_key("opacity_image")
@@ -288,23 +294,11 @@ impl<'a> Walk<'a, '_, '_> {
         if let Some(mesh) = self.meshes.get(&key) {
             return Ok(mesh.clone());
         }
-        let bytes = self.builder.bytes_of(file, place)?;
-        let refused = |why: &dyn std::fmt::Display| format!("{place}: \"{file}\": {why}");
-        let parts: Vec<Part> = match format {
-            // Materials of MTL are not asked for: the scene has its own.
-            MeshFormat::Obj => read_obj(&bytes, |_| Ok(Vec::new())).map_err(|error| refused(&error))?.parts,
-            MeshFormat::Ply => vec![read_ply(&bytes).map_err(|error| refused(&error))?],
-            MeshFormat::Serialized(index) => {
-                let (part, of_faces) = serialized::read(&bytes, index).map_err(|why| refused(&why))?;
-                flat |= of_faces;
-                vec![part]
-            }
-        };
+        let (parts, of_faces) = self.parts(file, format, place)?;
+        flat |= of_faces;
+        self.list_unread(&parts, file, place);
         let mut made = Vec::new();
         for mut part in parts {
-            for what in &part.left_out {
-                self.builder.leave_out(place, format!("\"{file}\": {what}"));
-            }
             let (has_uvs, has_normals) = (!part.mesh.uvs.is_empty(), !part.mesh.normals.is_empty());
             if flip_v {
                 part.mesh.uvs.iter_mut().for_each(|uv| uv[1] = 1.0 - uv[1]);
@@ -319,10 +313,7 @@ impl<'a> Walk<'a, '_, '_> {
             if !flat {
                 turn_to_normals(&mut part.mesh);
             }
-            let bounds = part.mesh.vertices.iter().fold(None, |bounds: Option<Reach>, v| {
-                let [low, high] = bounds.unwrap_or([*v, *v]);
-                Some([std::array::from_fn(|k| low[k].min(v[k])), std::array::from_fn(|k| high[k].max(v[k]))])
-            });
+            let bounds = reach(&part.mesh);
             let has_colours = self.paint(&mut part, attribute, place);
             made.push(MeshPart {
                 file: self.builder.mesh_file(&part.mesh),
@@ -336,6 +327,29 @@ impl<'a> Walk<'a, '_, '_> {
         let mesh = Rc::new(Mesh { parts: made, flat });
         self.meshes.insert(key, mesh.clone());
         Ok(mesh)
+    }
+
+    /// The meshes of a file, and whether it asks for the normals of its faces.
+    pub(super) fn parts(&mut self, file: &str, format: MeshFormat, place: &str) -> Result<(Vec<Part>, bool), String> {
+        let bytes = self.builder.bytes_of(file, place)?;
+        let refused = |why: &dyn std::fmt::Display| format!("{place}: \"{file}\": {why}");
+        let (parts, of_faces) = match format {
+            // Materials of MTL are not asked for: the scene has its own.
+            MeshFormat::Obj => (read_obj(&bytes, |_| Ok(Vec::new())).map_err(|error| refused(&error))?.parts, false),
+            MeshFormat::Ply => (vec![read_ply(&bytes).map_err(|error| refused(&error))?], false),
+            MeshFormat::Serialized(index) => {
+                let (part, of_faces) = serialized::read(&bytes, index).map_err(|why| refused(&why))?;
+                (vec![part], of_faces)
+            }
+        };
+        Ok((parts, of_faces))
+    }
+
+    /// Lists what the parts of a mesh file leave out.
+    pub(super) fn list_unread(&mut self, parts: &[Part], file: &str, place: &str) {
+        for what in parts.iter().flat_map(|part| &part.left_out) {
+            self.builder.leave_out(place, format!("\"{file}\": {what}"));
+        }
     }
 
     /// Gives the vertices of a mesh the colours that its material asks for, and no others; whether it has them.
@@ -380,10 +394,18 @@ impl<'a> Walk<'a, '_, '_> {
     }
 }
 
+/// The box around a mesh.
+pub(super) fn reach(mesh: &SceneMesh) -> Option<Reach> {
+    mesh.vertices.iter().fold(None, |bounds: Option<Reach>, v| {
+        let [low, high] = bounds.unwrap_or([*v, *v]);
+        Some([std::array::from_fn(|k| low[k].min(v[k])), std::array::from_fn(|k| high[k].max(v[k]))])
+    })
+}
+
 /// All of an object but its shape.
 #[derive(Clone, Debug)]
 pub(super) struct Dressed {
-    name: String,
+    pub name: String,
     pub look: Look,
     pub emission: Option<Value>,
     pub map: DAffine3,
@@ -394,7 +416,7 @@ pub(super) struct Dressed {
 pub(super) type Reach = [[f64; 3]; 2];
 
 impl Dressed {
-    fn placed(&self, shape: Value, reach: Option<Reach>) -> Placed {
+    pub(super) fn placed(&self, shape: Value, reach: Option<Reach>) -> Placed {
         Placed {
             name: self.name.clone(),
             shape,

@@ -57,26 +57,33 @@ impl Walk<'_, '_, '_> {
         }
     }
 
-    /// Turns the axis of a sheet to where the frame of its shape has it. What has another frame at each place becomes a sheet that changes
-    /// nothing of polarisation.
-    pub(super) fn place_sheet(&mut self, dressed: &mut Dressed, shape: &str, place: &str) {
+    /// The sheet that an object is, if it is one.
+    pub(super) fn sheet_of(&self, dressed: &Dressed) -> Option<Value> {
         let own = dressed.look.material.as_str().and_then(|name| self.builder.materials.get(name));
-        let mut sheet = own.unwrap_or(&dressed.look.material).clone();
-        if !is_sheet(&sheet) {
+        Some(own.unwrap_or(&dressed.look.material)).filter(|material| is_sheet(material)).cloned()
+    }
+
+    /// Makes of a sheet, which has another frame at each place, one that changes nothing of polarisation.
+    pub(super) fn without_axis(&mut self, dressed: &mut Dressed, sheet: &Value, shape: &str, place: &str) {
+        let what = format!(
+            "the axis of a \"{}\" on a {shape} cannot be converted, only that on rectangles and flat meshes: it lets as much light through, and \
+             changes no polarisation",
+            sheet["type"].as_str().unwrap_or_default()
+        );
+        self.builder.approximate(place, what);
+        dressed.look.opacity *= 1.0 - unpolarised(sheet);
+        dressed.look.material = json!({ "type": "black" });
+    }
+
+    /// Turns the axis of a sheet to where the frame of its shape has it. Meshes have frames of their own.
+    pub(super) fn place_sheet(&mut self, dressed: &mut Dressed, shape: &str, place: &str) {
+        let Some(mut sheet) = self.sheet_of(dressed).filter(|_| !matches!(shape, "obj" | "ply" | "serialized")) else {
             return;
-        }
+        };
         if shape != "rectangle" {
-            let what = format!(
-                "the axis of a \"{}\" on a {shape} cannot be converted, only that on a rectangle: it lets as much light through, and \
-                 changes no polarisation",
-                sheet["type"].as_str().unwrap_or_default()
-            );
-            self.builder.approximate(place, what);
-            dressed.look.opacity *= 1.0 - unpolarised(&sheet);
-            dressed.look.material = json!({ "type": "black" });
-            return;
+            return self.without_axis(dressed, &sheet, shape, place);
         }
-        let [x, y] = [0, 1].map(|k| sheet["axis"][k].as_f64().unwrap_or(0.0));
+        let [x, y] = frame_axis(&sheet);
         let matrix = dressed.map.matrix3;
         let outward = (matrix.inverse().transpose() * DVec3::Z).normalize_or_zero();
         let normal = if dressed.flipped { -outward } else { outward };
@@ -91,6 +98,11 @@ impl Walk<'_, '_, '_> {
             dressed.look.material = sheet;
         }
     }
+}
+
+/// The axis of a sheet in the frame of its surface.
+pub(super) fn frame_axis(sheet: &Value) -> [f64; 2] {
+    [0, 1].map(|k| sheet["axis"][k].as_f64().unwrap_or(0.0))
 }
 
 /// Along the surface, at an angle from growing u.

@@ -58,6 +58,12 @@ fn near(name: &str) -> Result<Vec<u8>, String> {
         "grain.bsdf" => Ok(GRAIN.to_vec()),
         "bare.ply" => Ok(BARE.to_vec()),
         "a.obj" => Ok(OBJ.to_vec()),
+        // cos 30° and sin 30° times the place.
+        "pane.obj" => Ok(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nvt 0 0\nvt 0.8660254 -0.5\nvt 0.5 0.8660254\nvt 1.3660254 0.3660254\n\
+f 1/1 2/2 3/3\nf 2/2 4/4 3/3\n"
+            .to_vec()),
+        "bare-pane.obj" => Ok(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 2 4 3\n".to_vec()),
+        "bent-pane.obj" => Ok(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nvn 0.6 0 0.8\nf 1//1 2//2 3//1\n".to_vec()),
         "flat.obj" => Ok(b"v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n".to_vec()),
         "turned.obj" => Ok(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 -1\nf 1//1 2//1 3//1\n".to_vec()),
         "normals.obj" => Ok(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//1 3//1\n".to_vec()),

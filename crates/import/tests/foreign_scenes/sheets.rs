@@ -102,3 +102,35 @@ fn sheets_without_a_like_let_as_much_light_through_and_are_listed() {
     let grey = imported("xml", &of(r#"<bsdf type="polarizer"><boolean name="polarizing" value="false"/></bsdf>"#, 5.0));
     assert_eq!((said(&grey), scene(&grey).objects[0].opacity), (Vec::new(), 0.5));
 }
+
+/// A square in the plane z = 0 as a mesh, and the axis of each of its parts in the world: in the frame that begins with growing u, or with the
+/// first edge of a triangle without texture coordinates.
+#[test]
+fn axes_on_flat_meshes_stand_where_the_frames_of_their_triangles_have_them() {
+    let placed = |file: &str, further: &str| {
+        let text = format!(
+            r#"<scene version="3.0.0"><shape type="obj" id="pane"><string name="filename" value="{file}"/>{further}
+            <bsdf type="polarizer"><spectrum name="theta" value="20"/></bsdf></shape></scene>"#
+        );
+        let imported = imported("xml", &text);
+        let scene = scene(&imported);
+        let axis = |object: &etalon_scene::Object| match scene.materials[object.material].kind {
+            MaterialKind::PolarisingSheet { axis, .. } => Some(axis),
+            _ => None,
+        };
+        (said(&imported), scene.objects.iter().map(axis).collect::<Vec<_>>())
+    };
+    // Growing u points to 30° in the file; a polariser is turned against its angle.
+    for (further, want) in [("", 10.0), (r#"<boolean name="flip_normals" value="true"/>"#, 50.0)] {
+        let (said, axes) = placed("pane.obj", further);
+        assert_eq!((said.len(), axes.len()), (0, 1), "{said:?}");
+        assert!(alike(axes[0].unwrap(), at(want)), "{axes:?} is not {want}°");
+    }
+    // Without texture coordinates each triangle has its own first edge: along x, and along y.
+    let (said, axes) = placed("bare-pane.obj", "");
+    assert_eq!((said.len(), axes.len()), (0, 2), "{said:?}");
+    assert!(alike(axes[0].unwrap(), at(-20.0)) && alike(axes[1].unwrap(), at(70.0)), "{axes:?}");
+    // Normals that are not the same everywhere make another frame at each place.
+    let (said, axes) = placed("bent-pane.obj", "");
+    assert!(said[0].contains("on a curved mesh cannot be converted") && axes == [None], "{said:?} {axes:?}");
+}
