@@ -28,7 +28,7 @@ fn filters() -> Vec<Truth> {
             .spp(1 << 20);
         Truth::new(name, &scene, value, formula)
             .because("The pixel shows the share of its filter that lies over the lamp, along one axis.")
-            .or_else("a box", (0.5 - edge).max(0.0))
+            .or_else("a box", (0.5 - edge).clamp(0.0, 1.0))
             .sees(0.01)
     };
     // The integral of a tent of radius 1 from x: (1 − x)²/2.
@@ -72,13 +72,13 @@ fn filters() -> Vec<Truth> {
         make(
             "filter-catmull-rom",
             json!({ "type": "mitchell", "b": 0, "c": 0.5 }),
-            1.2,
-            catmull_rom(1.2),
-            "∫ of (−3t³ + 15t² − 24t + 12)/6 from 1.2 to 2, which is negative",
+            -1.2,
+            1.0 - catmull_rom(1.2),
+            "1 − ∫ of (−3t³ + 15t² − 24t + 12)/6 from 1.2 to 2, which is negative",
         )
-        .confirmed("quadrature", 1e-9, move || by_steps(1.2, 0.0, 0.5))
-        .or_else("its magnitude", of_magnitude(1.2, &catmull_rom))
-        .or_else("cut where it is negative", 0.0),
+        .confirmed("quadrature", 1e-9, move || 1.0 - by_steps(1.2, 0.0, 0.5))
+        .or_else("its magnitude", 1.0 - of_magnitude(1.2, &catmull_rom))
+        .or_else("cut where it is negative", 1.0),
         make(
             "filter-mitchell-of-one-pixel",
             json!({ "type": "mitchell", "radius_px": 1, "b": 0.25, "c": 0.75 }),

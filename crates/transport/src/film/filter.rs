@@ -25,12 +25,12 @@ pub enum FilterSampler {
     /// Uniform over the pixel.
     Box,
     /// By a table.
-    Table(Table),
+    Table(FilterTable),
 }
 
 /// Cells of equal probability, in which density and weight are constant.
 #[derive(Clone, Debug)]
-pub struct Table {
+pub struct FilterTable {
     /// The edges of the cells.
     offsets: Vec<f64>,
     /// What a sample of each cell counts for; empty if all count for one.
@@ -45,12 +45,14 @@ impl FilterSampler {
         let reach = Self::reach_px(filter);
         match *filter {
             Filter::Box => Self::Box,
-            Filter::Tent { radius_px } => Self::Table(Table::new(reach, |x| 1.0 - x / radius_px)),
-            Filter::Gaussian { sigma_px } => Self::Table(Table::new(reach, |x| (-0.5 * (x / sigma_px).powi(2)).exp())),
-            Filter::Mitchell { radius_px, b, c } => {
-                Self::Table(Table::signed(reach, |x| mitchell(2.0 * x / radius_px, b, c)))
+            Filter::Tent { radius_px } => Self::Table(FilterTable::new(reach, |x| 1.0 - x / radius_px)),
+            Filter::Gaussian { sigma_px } => {
+                Self::Table(FilterTable::new(reach, |x| (-0.5 * (x / sigma_px).powi(2)).exp()))
             }
-            Filter::Lanczos { lobes } => Self::Table(Table::signed(reach, |x| lanczos(x, f64::from(lobes)))),
+            Filter::Mitchell { radius_px, b, c } => {
+                Self::Table(FilterTable::signed(reach, |x| mitchell(2.0 * x / radius_px, b, c)))
+            }
+            Filter::Lanczos { lobes } => Self::Table(FilterTable::signed(reach, |x| lanczos(x, f64::from(lobes)))),
         }
     }
 
@@ -140,7 +142,7 @@ impl FilterSampler {
     }
 }
 
-impl Table {
+impl FilterTable {
     /// Of the even function `f`, given on [0, radius], that is positive there.
     fn new(radius: f64, f: impl Fn(f64) -> f64) -> Self {
         let offsets = tabulate(0.0, radius, CELLS, f);
