@@ -398,10 +398,11 @@ fn shadow_rays_and_paths_find_the_same_light() {
     }
 }
 
-/// The irradiance of [`shadow_rays_and_paths_find_the_same_light`], of which shadow rays for the part above the mean find some.
+/// On an upright plate, under a radiance that falls from 3 above to 1 below, in proportion to the angle from 45° on: what is above 2 at one height
+/// lacks below. Shadow rays for the part above the mean find the upper half.
 #[test]
 fn all_of_a_sky_is_found_where_shadow_rays_are_for_its_bright_part() {
-    let truth = 0.5 * PI * 3.0 + 2.0 * PI * (0.75 - 2.0 * 2.0 / PI * (PI / 16.0 - 0.125));
+    let truth = 2.0 * PI;
     let light = Light::Environment(Arc::new(above_mean(&sky(2, 2, &[3.0, 3.0, 1.0, 1.0])).light));
     let mut random = Uniform::new(3);
     let [mut all, mut bright] = [Welford::default(), Welford::default()];
@@ -415,18 +416,14 @@ fn all_of_a_sky_is_found_where_shadow_rays_are_for_its_bright_part() {
                 else {
                     panic!("an image has a density and colours: {sample:?}")
                 };
-                radiance * sample.wi.z.max(0.0) / pdf
+                radiance * sample.wi.x.max(0.0) / pdf
             }));
         }
     }
-    // Significance 6e-5; a bias of 1.4 % would be seen.
+    // Significance 6e-5; a bias of 2 % would be seen.
     let z = (all.estimate().mean - truth) / all.standard_error();
-    assert!(
-        z.abs() < 4.0 && 9.0 * all.standard_error() < 0.014 * truth,
-        "{:?} is not {truth}: z = {z}",
-        all.estimate()
-    );
-    assert!(bright.estimate().mean < 0.95 * truth, "{:?}", bright.estimate());
+    assert!(z.abs() < 4.0 && 9.0 * all.standard_error() < 0.02 * truth, "{:?} is not {truth}: z = {z}", all.estimate());
+    assert!(bright.estimate().mean < 0.8 * truth, "{:?}", bright.estimate());
 }
 
 #[test]
