@@ -226,16 +226,18 @@ fn beside_a_lamp() -> Vec<Truth> {
         .into()
 }
 
+/// A light meter under an image.
+fn meter(file: &str, width: usize, texels: &[f64], projection: &str, how: &'static str) -> Scene {
+    Scene::light_meter()
+        .light(pose_json(UPRIGHT, json!({ "file": file, "projection": projection })))
+        .file(file, grey_hdr(width, texels))
+        .light_sampling(how)
+        .spp(4096)
+}
+
 /// A light meter under an image of which one texel shines.
 fn on_a_plate() -> Vec<Truth> {
     let upright = UPRIGHT;
-    let meter = |file: &str, width: usize, texels: &[f64], projection: &str, how: &'static str| {
-        Scene::light_meter()
-            .light(pose_json(upright, json!({ "file": file, "projection": projection })))
-            .file(file, grey_hdr(width, texels))
-            .light_sampling(how)
-            .spp(4096)
-    };
     let mut list = Vec::new();
     for (name, column, row, how) in [
         ("sky-with-one-bright-texel", 3_usize, 1_usize, "mis"),
@@ -321,12 +323,7 @@ fn bright_in_grey() -> Vec<Truth> {
         for (name, projection, width, place, of_bright, value, look) in skies {
             let mut image = vec![GREY; width * 4];
             image[place] = BRIGHT;
-            let file = format!("{name}.hdr");
-            let scene = Scene::light_meter()
-                .light(pose_json(UPRIGHT, json!({ "file": file, "projection": projection })))
-                .file(&file, grey_hdr(width, &image))
-                .light_sampling(how)
-                .spp(4096);
+            let scene = meter(&format!("{name}.hdr"), width, &image, projection, how);
             let truth = Truth::new(
                 format!("{name}-with-one-bright-texel-by-{how}"),
                 &scene,
