@@ -41,5 +41,6 @@ mod scales;
 mod shading;
 mod shapes;
 mod skies;
+mod skies_above_their_mean;
 mod specular_connections;
 mod textures;

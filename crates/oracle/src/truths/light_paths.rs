@@ -130,7 +130,7 @@ fn sky_by_a_mirror(way: &'static str) -> Truth {
         .light(json!({ "type": "environment", "image": {
             "file": "bright-above.hdr", "projection": "latitude-longitude", "up": [0, 0, 1], "forward": [1, 0, 0] } }))
         .file("bright-above.hdr", grey_hdr(8, &image))
-        .spp(spp(way, 256, 256));
+        .spp(256);
     Truth::new(
         format!("sky-by-a-mirror-with-light-paths-{way}"),
         &scene,

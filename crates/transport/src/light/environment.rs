@@ -11,7 +11,6 @@ use crate::spectral::{Colour, PathSpectrum};
 pub(super) use above_mean::AboveMean;
 use equal_area::EqualArea;
 use etalon_geometry::SurfaceId;
-use etalon_geometry::warp::uniform_sphere;
 use etalon_optics::Vec3;
 use etalon_scene::{EnvironmentImage, EnvironmentProjection, Image};
 use meridians::Meridians;
@@ -154,10 +153,7 @@ impl LightSource for EnvironmentLight {
     }
 
     fn sample_all(&self, _from: Vec3<f64>, u: [f64; 2], _time: f64) -> Option<LightSample> {
-        let wi = match self.above().choose_even(u[0]) {
-            (true, u0) => uniform_sphere([u0, u[1]]),
-            (false, u0) => self.sample_row([&[u0], &[u[1]]]).0[0],
-        };
+        let wi = self.above().draw_all(u, |[u, v]| self.sample_row([&[u], &[v]]).0[0]);
         let Look { colour, density } = self.look(wi);
         Look { colour, density: self.above().density_of_all(density) }.sample(wi)
     }

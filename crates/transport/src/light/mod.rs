@@ -228,7 +228,7 @@ impl Light {
         each!(self, light => LightSource::sample(light, from, u, time))
     }
 
-    /// The same, but finds all light of skies as well. The density is another one than that of [`Light::density`] there.
+    /// The same, but finds all light of skies, too. Their density is then not that of [`Light::density`].
     pub fn sample_all(&self, from: Vec3<f64>, u: [f64; 2], time: f64) -> Option<LightSample> {
         each!(self, light => LightSource::sample_all(light, from, u, time))
     }

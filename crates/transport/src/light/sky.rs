@@ -9,7 +9,6 @@ use super::{LightSample, LightSampling, LightSource, Target};
 use crate::mis::Density;
 use crate::spectral::{Colour, PathSpectrum};
 use etalon_geometry::SurfaceId;
-use etalon_geometry::warp::uniform_sphere;
 use etalon_optics::{Frame, Real, Vec3};
 use etalon_scene::{CieSky, DaylightLook, DaylightPattern, DaylightSky, Image, Perez, Texels};
 use std::f64::consts::PI;
@@ -180,10 +179,7 @@ impl LightSource for SkyLight {
     }
 
     fn sample_all(&self, _from: Vec3<f64>, u: [f64; 2], _time: f64) -> Option<LightSample> {
-        let wi = match self.map.above().choose_even(u[0]) {
-            (true, u0) => uniform_sphere([u0, u[1]]),
-            (false, u0) => self.direction([u0, u[1]]),
-        };
+        let wi = self.map.above().draw_all(u, |u| self.direction(u));
         let look = self.look(wi);
         SkyLook { density: self.map.above().density_of_all(look.density), ..look }.sample(wi)
     }

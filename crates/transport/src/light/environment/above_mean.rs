@@ -6,7 +6,8 @@
 //! density is 0, and what a path runs into there has the MIS weight 1: the sum stays the same.
 
 use crate::light::LightSampling;
-use etalon_optics::Real;
+use etalon_geometry::warp::uniform_sphere;
+use etalon_optics::{Real, Vec3};
 use std::f64::consts::PI;
 
 /// Below this share of the light a sky is as good as constant, and the luminance itself is drawn from.
@@ -26,14 +27,15 @@ pub(in crate::light) struct AboveMean {
 impl AboveMean {
     /// `integral` of the part above a floor. Where shadow rays alone find light, the floor is 0.
     pub(super) fn new(sampling: LightSampling, integral: impl Fn(Self) -> f64) -> Self {
-        let above = |floor, whole| {
-            let above = Self { floor, part: 0.0, whole };
-            Self { part: integral(above), ..above }
-        };
-        let all = above(0.0, 0.0);
-        let all = Self { whole: all.part, ..all };
-        let some = above(all.whole / (4.0 * PI), all.whole);
-        if sampling == LightSampling::Mis && some.part > LEAST_SHARE * all.whole { some } else { all }
+        let all = Self { floor: 0.0, part: 0.0, whole: 0.0 };
+        let whole = integral(all);
+        let all = Self { part: whole, whole, ..all };
+        if sampling != LightSampling::Mis {
+            return all;
+        }
+        let above = Self { floor: whole / (4.0 * PI), ..all };
+        let part = integral(above);
+        if part > LEAST_SHARE * whole { Self { part, ..above } } else { all }
     }
 
     /// The part of a luminance.
@@ -48,23 +50,27 @@ impl AboveMean {
         part / self.part
     }
 
-    /// The share of evenly drawn directions with which directions reach all of the sky. Together their density is that of the larger of the
+    /// The share of directions that are drawn evenly where all of the sky is to be reached. The density is then proportional to the larger of the
     /// luminance and its mean, up to how the luminance is interpolated.
     fn even_share(&self) -> f64 {
         if self.floor == 0.0 { 0.0 } else { self.whole / (self.whole + self.part) }
     }
 
-    /// Whether `u` draws an even direction where all of the sky is to be reached; and the number that is left of it.
-    pub(in crate::light) fn choose_even(&self, u: f64) -> (bool, f64) {
+    /// The direction that `u` in [0, 1)² draws to reach all of the sky. `toward_part` draws one toward the part.
+    pub(in crate::light) fn draw_all(
+        &self,
+        [u, v]: [f64; 2],
+        toward_part: impl FnOnce([f64; 2]) -> Vec3<f64>,
+    ) -> Vec3<f64> {
         let share = self.even_share();
         match u < share {
-            true => (true, u / share),
+            true => uniform_sphere([u / share, v]),
             // Rounding may reach 1.
-            false => (false, ((u - share) / (1.0 - share)).min(f64::ONE_MINUS_EPSILON)),
+            false => toward_part([((u - share) / (1.0 - share)).min(f64::ONE_MINUS_EPSILON), v]),
         }
     }
 
-    /// The density of such a direction, sr⁻¹, if directions toward the part have `density`.
+    /// The density of [`AboveMean::draw_all`] in a direction, sr⁻¹, where `toward_part` has `density`.
     pub(in crate::light) fn density_of_all(&self, density: f64) -> f64 {
         let share = self.even_share();
         share / (4.0 * PI) + (1.0 - share) * density
