@@ -1,9 +1,9 @@
-"""Six scenes in which glass stands between most of the light and the eye or the floor, as files of Mitsuba 3.
+"""Seven scenes in which glass stands between most of the light and the eye or the floor, as files of Mitsuba 3.
 
     python3 hard.py DIR       # writes DIR/hard-….xml and what they refer to
 
-A tumbler of water under a sky with a sun, a prism before a strip lamp, five brilliants, a room behind a pane, a pool, a lamp in a bulb. Glass has
-one index, since Mitsuba cannot part wavelengths. Needs numpy.
+A tumbler of water under a sky with a sun, a prism before a strip lamp, a prism in a beam, five brilliants, a room behind a pane, a pool, a lamp in a
+bulb. Glass has one index, since Mitsuba cannot part wavelengths. Needs numpy.
 """
 import math
 import os
@@ -14,7 +14,10 @@ import numpy as np
 
 from draw import MAX_DEPTH, SIZE, picture, ply, sky
 
-NAMES = ["tumbler", "prism", "brilliants", "room", "pool", "bulb"]
+NAMES = ["tumbler", "prism", "beam", "brilliants", "room", "pool", "bulb"]
+# A prism whose cross-section is an equilateral triangle of side 1, over z from −0.5 to 0.5.
+PRISM_CORNERS = [(-0.5, 0, -0.5), (0.5, 0, -0.5), (0, 0.87, -0.5), (-0.5, 0, 0.5), (0.5, 0, 0.5), (0, 0.87, 0.5)]
+PRISM_FACES = [(0, 2, 1), (3, 4, 5), (0, 1, 4), (0, 4, 3), (1, 2, 5), (1, 5, 4), (2, 0, 3), (2, 3, 5)]
 
 
 def mesh(path, corners, faces, smooth=None):
@@ -108,13 +111,27 @@ class Hard:
             self.sky("tumbler", True)])
 
     def prism(self):
-        corners = [(-0.5, 0, -0.5), (0.5, 0, -0.5), (0, 0.87, -0.5), (-0.5, 0, 0.5), (0.5, 0, 0.5), (0, 0.87, 0.5)]
-        faces = [(0, 2, 1), (3, 4, 5), (0, 1, 4), (0, 4, 3), (1, 2, 5), (1, 5, 4), (2, 0, 3), (2, 3, 5)]
-        body = self.file("hard-prism.ply", lambda p: mesh(p, corners, faces))
+        body = self.file("hard-prism.ply", lambda p: mesh(p, PRISM_CORNERS, PRISM_FACES))
         self.write("prism", "1.5, 2.2, 4", "0.6, 0.3, 0", 42, [
             self.floor("paper"), rectangle('<scale value="4"/><translate z="-2"/>', diffuse("0.7 0.7 0.7")),
             shape(body, glass(1.6), '<translate y="0.02"/>'),
             rectangle('<scale x="0.02" y="0.4"/><rotate y="1" angle="90"/><translate x="-2" y="0.9"/>', area("120 110 90"))])
+
+    def beam(self):
+        """A lamp of 9 cm, 9 m before a slit of 4 cm × 40 cm in a black wall: a beam of 0.6° falls on a prism, and a spot of it on the floor."""
+        body = self.file("hard-beam.ply", lambda p: mesh(p, PRISM_CORNERS, PRISM_FACES))
+        low, high, side = 1.18, 1.22, 0.2
+        def board(y0, y1, z0, z1):
+            place = '<scale x="%g" y="%g"/><rotate y="1" angle="90"/><translate x="-1" y="%g" z="%g"/>' % (
+                (z1 - z0) / 2, (y1 - y0) / 2, (y0 + y1) / 2, (z0 + z1) / 2)
+            return rectangle(place, diffuse("0 0 0"))
+        self.write("beam", "3.4, 2.6, 3.6", "0.7, 0.5, 0", 42, [
+            self.floor("sheet"), rectangle('<scale value="4"/><translate z="-2"/>', diffuse("0.7 0.7 0.7")),
+            board(0, low, -4, 4), board(high, 6, -4, 4), board(low, high, -4, -side), board(low, high, side, 4),
+            # Turned by half the deviation of 46.3°: within the prism the beam goes along its base.
+            shape(body, glass(1.6), '<translate y="-0.435"/><rotate z="1" angle="-23.13"/><translate y="1.2"/>'),
+            rectangle('<scale value="0.045"/><rotate y="1" angle="90"/><translate x="-10" y="1.2"/>', area("40000 38000 34000")),
+            '<emitter type="constant"><rgb name="radiance" value="0.05"/></emitter>'])
 
     def brilliants(self):
         def brilliant(path):

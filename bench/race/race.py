@@ -287,7 +287,7 @@ def main():
     parser.add_argument("--scenes", type=split, default=list(SPP), help="of " + ", ".join(SPP))
     parser.add_argument("--entries", type=split, help="of " + ", ".join(ENTRIES))
     parser.add_argument("--draw", type=int, metavar="N", help="draw N scenes instead, and log them")
-    parser.add_argument("--hard", action="store_true", help="render the six scenes of hard.py instead")
+    parser.add_argument("--hard", action="store_true", help="render the seven scenes of hard.py instead")
     parser.add_argument("--seed", help="seed of the draw; default: the first eight digits of the commit")
     parser.add_argument("--spp", type=lambda text: [int(n) for n in text.split(",")], help="samples a pixel, the same for each scene")
     parser.add_argument("--rounds", type=int, default=5, help="independent renders at each number of samples, at least 2")
