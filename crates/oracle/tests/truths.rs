@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use etalon_oracle::{
     statistics::Estimate,
     subjects::Reading,
-    truths::{Claim, Quantity, Truth, exchange_files, judge, judge_whatever_the_noise, truths},
+    truths::{Claim, Quantity, Truth, exchange_files, judge, judge_to, truths},
 };
 
 fn find(name: &str) -> Truth {
@@ -105,11 +105,11 @@ fn a_right_and_quiet_reading_passes_a_wrong_or_noisy_one_does_not() {
     assert!(!judge(&truth, &reading(f64::NAN, 1e-4), significance).pass);
     assert!(!judge(&truth, &reading(2.25, f64::NAN), significance).pass);
     // Whatever the noise, what is wrong is wrong.
-    judge_whatever_the_noise(&truth, &reading(2.3, 0.1), significance).assert();
+    judge_to(&truth, &reading(2.3, 0.1), significance, f64::INFINITY).assert();
     for wrong in [reading(2.26, 1e-4), reading(3.0, 0.1), Reading { nonfinite: 1, ..reading(2.25, 0.1) }] {
-        assert!(!judge_whatever_the_noise(&truth, &wrong, significance).pass, "{wrong:?}");
+        assert!(!judge_to(&truth, &wrong, significance, f64::INFINITY).pass, "{wrong:?}");
     }
-    assert!(!judge_whatever_the_noise(&truth, &reading(2.25, f64::NAN), significance).pass);
+    assert!(!judge_to(&truth, &reading(2.25, f64::NAN), significance, f64::INFINITY).pass);
 }
 
 #[test]

@@ -29,14 +29,9 @@ pub fn judge(truth: &Truth, reading: &Reading, significance: f64) -> Verdict {
     judge_to(truth, reading, significance, truth.must_resolve())
 }
 
-/// The same, however large the noise is: it fails where [`judge`] would find the reading wrong, not where it shows nothing. For readings of many
-/// seeds, which show something together.
-pub fn judge_whatever_the_noise(truth: &Truth, reading: &Reading, significance: f64) -> Verdict {
-    judge_to(truth, reading, significance, f64::INFINITY)
-}
-
-/// Holds a reading to the truth that must be able to see a bias of `needed`.
-fn judge_to(truth: &Truth, reading: &Reading, significance: f64, needed: f64) -> Verdict {
+/// The same of a reading that must be able to see a bias of `needed`, in units of the value. With [`Truth::nearest_mistake`] it must exclude the
+/// known mistakes alone. With infinity it fails where it is wrong, not where it shows nothing, as one of many seeds that show something together.
+pub fn judge_to(truth: &Truth, reading: &Reading, significance: f64, needed: f64) -> Verdict {
     if reading.nonfinite > 0 {
         return Verdict::broken(&truth.name, format!("{} samples were not finite numbers", reading.nonfinite));
     }

@@ -105,7 +105,7 @@ pub use irradiance::{
 pub use rami::rami;
 pub use suite_case::SuiteCase;
 
-pub use judge::{CUT_SHARE, Renders, judge, judge_whatever_the_noise};
+pub use judge::{CUT_SHARE, Renders, judge, judge_to};
 pub use prisms::photometric_weight;
 
 /// What is read off a picture.
@@ -321,7 +321,14 @@ impl Truth {
     pub fn must_resolve(&self) -> f64 {
         let value = self.value();
         let relative = if value == 0.0 { f64::INFINITY } else { self.must_see * value.abs() };
-        self.mistakes().iter().map(|mistake| (mistake.value - value).abs()).fold(relative, f64::min)
+        relative.min(self.nearest_mistake())
+    }
+
+    /// The absolute bias of the known mistake that is nearest to the value; infinite if none is known.
+    #[must_use]
+    pub fn nearest_mistake(&self) -> f64 {
+        let value = self.value();
+        self.mistakes().iter().map(|mistake| (mistake.value - value).abs()).fold(f64::INFINITY, f64::min)
     }
 
     /// A bound on the absolute bias of a reading that took this many paths and cut some, though the scene did not end them. None of these

@@ -4,13 +4,12 @@ use std::time::Instant;
 
 use etalon_oracle::statistics::{Budget, Welford};
 use etalon_oracle::subjects::Reading;
-use etalon_oracle::truths::{Claim, Quantity, SceneFile, Truth, judge, judge_whatever_the_noise};
+use etalon_oracle::truths::{Claim, Quantity, SceneFile, Truth, judge, judge_to};
 use etalon_scene::{Filter, NamedFile, PathReuse, Scene};
 use etalon_transport::{Counters, Study};
 use miette::Report as Problem;
 
 use super::VerifyArgs;
-use super::finer::{Cost, finer};
 use super::report::{Report, Row};
 use super::series::{Series, Stop};
 use crate::failure::{Failure, Outcome};
@@ -31,15 +30,15 @@ const MOST_TO_COUNT: u32 = 1 << 11;
 /// Paths that are taken beyond those that would just do at 1/√n: what a reading has seen is known from its noise, to about a tenth.
 const SPARE: f64 = 1.15;
 /// A reading that counts takes this many times the paths to see more, or fewer where these will do.
-pub(super) const MORE: u32 = 4;
+const MORE: u32 = 4;
 /// What a thorough run wants to see of each truth, relative, and of those whose whole name was given. How many rays it spends on that for
 /// every truth, and how many where as many will do. In rays, not in seconds, so that what is read is the same on every machine.
 const THOROUGH_SEES: f64 = 2e-3;
-pub(super) const THOROUGH_SEES_BY_NAME: f64 = 2e-4;
+const THOROUGH_SEES_BY_NAME: f64 = 2e-4;
 const THOROUGH_RAYS: u64 = 32_000_000;
 const THOROUGH_REACH_RAYS: u64 = 4_096_000_000;
-/// Rays of a run of all truths. What the truths do not need for their mistakes goes to those that see the least.
-const RAYS_OF_ALL: u64 = 400_000_000;
+/// In a run of all truths, the rays that each may take to see more than its known mistakes. With them all take three minutes of two cores.
+const RAYS_TO_SEE: u64 = 1_200_000;
 
 /// A truth's picture by our integrator, taken with many seeds.
 pub(super) struct Measurement<'a> {
@@ -172,69 +171,58 @@ pub(super) fn run(args: &VerifyArgs, chosen: Vec<Truth>) -> Outcome {
         [&Claim::UNPOLARISED[..], &[Claim::CarriesPolarisation, Claim::StokesParameters, Claim::Meters, Claim::Bands]]
             .concat();
     let chosen: Vec<Truth> = chosen.into_iter().filter(|truth| truth.applies_to(&claims)).collect();
-    // Of all truths some are judged a second time, by more samples.
-    let again = args.names.is_empty() && !args.thorough && !args.coarse;
-    let significance = Budget::for_tests(chosen.len() * if again { 2 } else { 1 }).each();
+    let significance = Budget::for_tests(chosen.len()).each();
     let mut report = Report::new(!args.json).with_seed(args.seed).of(chosen.len());
-    let mut costs = Vec::with_capacity(chosen.len());
-    let signal = || interrupt.signal().expect("nothing else ends a measurement early");
     // Readings of one scene follow each other.
     let mut last = None;
     for (index, truth) in chosen.iter().enumerate() {
-        let Some((row, cost)) = judged(args, truth, None, significance, &interrupt, &mut last) else {
-            return report.interrupted(signal(), &chosen[index..]);
+        let Some(row) = judged(args, truth, significance, &interrupt, &mut last) else {
+            let signal = interrupt.signal().expect("nothing else ends a measurement early");
+            return report.interrupted(signal, &chosen[index..]);
         };
-        costs.push(Cost { sees: row.relative_resolution().filter(|_| row.passes()), ..cost });
         report.push(row);
-    }
-    let finer = if again { finer(&costs, RAYS_OF_ALL) } else { Vec::new() };
-    report.announce_finer(finer.len());
-    for (index, effort) in finer {
-        let Some((row, _)) = judged(args, &chosen[index], Some(effort), significance, &interrupt, &mut None) else {
-            return report.interrupted(signal(), &[]);
-        };
-        report.replace(index, row);
     }
     report.finish()
 }
 
-/// Renders and judges one truth, with this many times the samples of the first step, or as many as it takes. The measurement before is gone on with
-/// if it has the same scene. `None` if the program was asked to end before.
+/// Renders and judges one truth, by as many samples as it takes. The measurement before is gone on with if it has the same scene. `None` if the
+/// program was asked to end before.
 pub(super) fn judged<'a>(
     args: &VerifyArgs,
     truth: &'a Truth,
-    effort: Option<u32>,
     significance: f64,
     interrupt: &Interrupt,
     last: &mut Option<Measurement<'a>>,
-) -> Option<(Row, Cost)> {
+) -> Option<Row> {
     let start = Instant::now();
     let known = last.take().and_then(|measurement| measurement.read_for(truth));
-    let known_rays = known.as_ref().map_or(0, Measurement::rays);
     let made = known.map_or_else(|| Measurement::new(truth, args).map_err(Stop::Failed), Ok);
     let measured = made.and_then(|mut measurement| {
-        let (reading, effort) = match effort {
-            Some(effort) => (measurement.render_to(effort, significance, interrupt)?, effort),
-            None => measured(args, &mut measurement, significance, interrupt)?,
-        };
-        let rays = measurement.rays();
-        let cost = Cost { rays, spent: rays - known_rays, effort, sees: None };
+        let reading = measured(args, &mut measurement, significance, interrupt)?;
         let (paths, cut) = (measurement.paths(), measurement.cut_paths());
         *last = Some(measurement);
-        Ok((reading, paths, cut, cost))
+        Ok((reading, paths, cut))
     });
     let seconds = || start.elapsed().as_secs_f64();
     match measured {
-        Ok((reading, paths, cut, cost)) => {
-            let judge = if args.coarse { judge_whatever_the_noise } else { judge };
-            let row = Row::by(truth, Ok(reading), |reading| judge(truth, reading, significance));
+        Ok((reading, paths, cut)) => {
+            let needed = must_resolve(args, truth, u64::MAX);
+            let row = Row::by(truth, Ok(reading), |reading| judge_to(truth, reading, significance, needed));
             let row = row.took(seconds(), Some(paths));
-            Some((row.cut(cut, reading.cut_bias), cost))
+            Some(row.cut(cut, reading.cut_bias))
         }
-        Err(Stop::Failed(why)) => {
-            Some((Row::new(truth, Err(why), significance).took(seconds(), None), Cost::default()))
-        }
+        Err(Stop::Failed(why)) => Some(Row::new(truth, Err(why), significance).took(seconds(), None)),
         Err(Stop::Interrupted) => None,
+    }
+}
+
+/// The bias that a reading must be able to see after so many rays.
+fn must_resolve(args: &VerifyArgs, truth: &Truth, rays: u64) -> f64 {
+    let of_all = args.names.is_empty() && args.suite.is_none() && !args.thorough;
+    match () {
+        () if args.coarse => f64::INFINITY,
+        () if of_all && rays >= RAYS_TO_SEE => truth.nearest_mistake(),
+        () => truth.must_resolve(),
     }
 }
 
@@ -245,7 +233,7 @@ fn measured(
     measurement: &mut Measurement<'_>,
     significance: f64,
     interrupt: &Interrupt,
-) -> Result<(Reading, u32), Stop> {
+) -> Result<Reading, Stop> {
     let truth = measurement.truth;
     let wanted = thorough_sees(&args.names, truth) * truth.value().abs();
     let (mut effort, mut seen_before) = (measurement.effort.max(1), f64::INFINITY);
@@ -253,19 +241,17 @@ fn measured(
         let reading = measurement.render_to(effort, significance, interrupt)?;
         if reading.cut_bias.is_infinite() {
             // No number of paths bounds it.
-            break Ok((reading, effort));
+            break Ok(reading);
         }
         let seen = judge(truth, &reading, significance).resolvable_bias;
-        let enough = args.coarse || seen <= truth.must_resolve() || effort >= MOST_TO_COUNT;
+        let needed = must_resolve(args, truth, measurement.rays());
+        let enough = seen <= needed || needed.is_infinite() || effort >= MOST_TO_COUNT;
         let thorough = || is_worth_more(measurement.rays(), seen_before, seen, wanted);
         if enough && !(args.thorough && thorough()) {
-            break Ok((reading, effort));
+            break Ok(reading);
         }
-        effort = if enough {
-            effort.saturating_mul(more_to_see(seen, wanted))
-        } else {
-            to_count(effort, seen / truth.must_resolve())
-        };
+        effort =
+            if enough { effort.saturating_mul(more_to_see(seen, wanted)) } else { to_count(effort, seen / needed) };
         seen_before = seen;
     }
 }

@@ -91,11 +91,6 @@ impl Row {
         self.unseen.iter().copied()
     }
 
-    /// Whether the truth holds.
-    pub(super) fn passes(&self) -> bool {
-        self.pass
-    }
-
     /// The smallest bias that would have been caught, relative to the truth; `None` of a truth of 0, and without a reading.
     pub(super) fn relative_resolution(&self) -> Option<f64> {
         let relative = self.resolvable_bias / self.truth.abs();
@@ -254,21 +249,6 @@ impl Report {
         }
         *if row.pass { &mut self.passed } else { &mut self.failed } += 1;
         self.truths.push(row);
-    }
-
-    /// Says that this many truths are judged again by more samples.
-    pub(super) fn announce_finer(&self, count: usize) {
-        if count > 0 && self.table {
-            print::line(&format!("the {count} that see the least, by more samples:"));
-        }
-    }
-
-    /// Puts a finer reading in the place of the truth's first.
-    pub(super) fn replace(&mut self, index: usize, row: Row) {
-        self.push(row);
-        let row = self.truths.pop().expect("it was just pushed");
-        let first = std::mem::replace(&mut self.truths[index], row);
-        *if first.pass { &mut self.passed } else { &mut self.failed } -= 1;
     }
 
     pub(super) fn push_missing(&mut self, truth: &Truth) {

@@ -117,7 +117,7 @@ pub(super) fn run(args: &VerifyArgs, suite: Suite, cases: &[SuiteCase]) -> Outco
     let mut lines = Vec::with_capacity(cases.len());
     let mut last = None;
     for (index, case) in cases.iter().enumerate() {
-        let Some((row, _)) = judged(args, &case.truth, None, significance, &interrupt, &mut last) else {
+        let Some(row) = judged(args, &case.truth, significance, &interrupt, &mut last) else {
             let signal = interrupt.signal().expect("nothing else ends a measurement early");
             let left: Vec<Truth> = cases[index..].iter().map(|case| case.truth.clone()).collect();
             return report.interrupted(signal, &left);
