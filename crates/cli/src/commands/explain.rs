@@ -40,6 +40,10 @@ struct ExplainJson<'a> {
     lights: usize,
     /// Whether they are chosen for each point anew, by where they are; else by power alone.
     lights_by_place: bool,
+    /// Share of the shadow rays that a trial gave each of them; with `lights_by_place` each without a place, then all others. Left out where power
+    /// decides.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    light_shares: Option<Vec<f64>>,
     /// Share of the directions of diffuse surfaces that is drawn toward mirrors and bodies of glass, and how many these are; 0 where
     /// that does not pay.
     guided_share: f64,
@@ -93,6 +97,7 @@ pub(crate) fn run(args: ExplainArgs) -> Outcome {
             plan,
             lights,
             lights_by_place,
+            light_shares: prepared.learned_light_shares(),
             guided_share,
             guided_targets,
             specular_image_share,
@@ -194,6 +199,21 @@ fn how(prepared: &Prepared) -> Vec<(&'static str, String)> {
         (count, false) => format!("one of {count}, chosen by power"),
         (count, true) => format!("one of {count}, chosen by a light tree: by power, distance and direction"),
     };
+    let choice = match (prepared.learned_light_shares(), prepared.lights().1) {
+        (None, _) => choice,
+        (Some(shares), true) => {
+            let beyond = 100.0 * (1.0 - shares.last().expect("the tree is one of them"));
+            format!("{choice}; a trial gave {beyond:.0} % of the shadow rays to those without a place")
+        }
+        (Some(shares), false) => {
+            let mut percent: Vec<String> = shares.iter().map(|share| format!("{:.0}", 100.0 * share)).collect();
+            if percent.len() > MOST_SHARES {
+                percent.truncate(MOST_SHARES);
+                percent.push("…".to_owned());
+            }
+            format!("one of {}; a trial gave them {} % of the shadow rays", shares.len(), percent.join(", "))
+        }
+    };
     let lanes = match plan.lane_model {
         LaneModel::One => "1, because all light has the same spectrum".to_owned(),
         LaneModel::Hero if plan.runs(EffectName::Dispersion) => {
@@ -227,6 +247,9 @@ fn how(prepared: &Prepared) -> Vec<(&'static str, String)> {
         ("numbers", plan.sampler.to_owned()),
     ]
 }
+
+/// Lights whose shares are listed.
+const MOST_SHARES: usize = 8;
 
 /// What is measured beside effects.
 const LIGHT_PATHS: &str = "light-paths";

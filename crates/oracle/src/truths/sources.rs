@@ -17,6 +17,7 @@ pub(super) fn truths() -> Vec<Truth> {
     let mut list = spots();
     list.extend(in_instances());
     list.extend(unequal());
+    list.extend(under_a_roof());
     list.extend(ways());
     list.extend(dark());
     list
@@ -174,6 +175,40 @@ fn unequal() -> Vec<Truth> {
                 .sees(0.02)
         })
         .into()
+}
+
+/// Balls that light a plate under a roof, and a sun with hundreds of times their power above it. What shadow rays send to the sun brings nothing.
+fn under_a_roof() -> Vec<Truth> {
+    const RADIUS_M: f64 = 0.4;
+    const SUN: f64 = 300.0;
+    let make = |name: &str, centres: Vec<Vec3>| {
+        let sun_and_roof = Scene::light_meter()
+            .directional_light([0.0, 0.0, -1.0], SUN)
+            .object(level_square([0.0, 0.0, 3.0], 2.0, false), black())
+            .spp(1 << 10);
+        let lamp = |scene: Scene, &centre: &Vec3| scene.lamp(sphere(centre, RADIUS_M), black(), 1.0, "front");
+        let irradiance: f64 = centres
+            .iter()
+            .map(|[x, y, z]| {
+                let distance = (x * x + y * y + z * z).sqrt();
+                sphere_irradiance(RADIUS_M, distance, (z / distance).acos())
+            })
+            .sum();
+        Truth::new(name, &centres.iter().fold(sun_and_roof, lamp), shown(irradiance), "(ρ/π) Σ L π(R/d)² cos β")
+            .because("Irradiances add up. The roof keeps the sun from the plate, however bright it is.")
+            .or_else("the sun shines through the roof", shown(irradiance + SUN))
+            .or_else("each ball twice", shown(2.0 * irradiance))
+            .or_else("dark", 0.0)
+            .sees(0.01)
+    };
+    let ring = (0..12).map(|k| {
+        let (sin, cos) = (f64::from(k) * PI / 6.0).sin_cos();
+        [1.7 * cos, 1.7 * sin, 1.0]
+    });
+    vec![
+        make("ball-lamp-under-a-roof-in-the-sun", vec![[0.3, 0.0, 1.2]]),
+        make("twelve-ball-lamps-under-a-roof-in-the-sun", ring.collect()),
+    ]
 }
 
 /// One picture by every way of rendering it that a scene can ask for.

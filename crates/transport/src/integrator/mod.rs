@@ -23,6 +23,7 @@ pub(crate) mod connection_trial;
 mod emission;
 pub(crate) mod film_entry;
 mod fluorescence;
+pub(crate) mod light_choice_trial;
 pub(crate) mod light_tracing;
 mod medium;
 mod next_event;

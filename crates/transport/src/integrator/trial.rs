@@ -42,6 +42,11 @@ impl Tried {
         Self { columns: along(film.width), rows: along(film.height), step }
     }
 
+    /// How many pixels are tried.
+    pub(crate) fn count(&self) -> u32 {
+        (self.columns.len() * self.rows.len()) as u32
+    }
+
     /// The number of the tried pixel that stands for a pixel.
     pub(crate) fn cell(&self, x: u32, y: u32) -> usize {
         let along = |at: u32, tried: usize| ((at / self.step) as usize).min(tried - 1);
@@ -68,6 +73,28 @@ impl Tried {
         let levels: Vec<f64> = (0..means.len()).map(|at| around(at / columns, at % columns)).collect();
         let mean = levels.iter().sum::<f64>() / levels.len() as f64;
         levels.into_iter().map(|level| (level, level * level + 0.01 * mean * mean)).collect()
+    }
+}
+
+/// What the variance of each pixel counts against: the square of the level about it, as it is seen, and that of the whole picture, as its error is
+/// stated.
+pub(crate) struct Scales {
+    about: Vec<f64>,
+    of_all: f64,
+}
+
+impl Scales {
+    pub(crate) fn new(tried: &Tried, means: &[f64]) -> Self {
+        let mean = means.iter().sum::<f64>() / means.len() as f64;
+        Self { about: tried.levels(means).into_iter().map(|(_, scale)| scale).collect(), of_all: mean * mean }
+    }
+
+    /// The sums of the variances of all pixels.
+    pub(crate) fn sums(&self, variances: impl Iterator<Item = f64>) -> [f64; 2] {
+        let against = |variance: f64, scale: f64| if scale > 0.0 { variance / scale } else { 0.0 };
+        variances.zip(&self.about).fold([0.0; 2], |sums, (variance, about)| {
+            [sums[0] + against(variance, *about), sums[1] + against(variance, self.of_all)]
+        })
     }
 }
 

@@ -3,6 +3,9 @@
 //! Few lights are chosen in proportion to their power, with a share spread evenly: one table for all points. Of many, most are too far
 //! away to matter: those that are somewhere are chosen by a [`LightTree`], for each point anew, with a tenth left to the table, so that
 //! a light which the tree thinks little of is still found with a bounded weight.
+//!
+//! Power does not know what is in the way: in a room a lamp lights more than the sky above the roof. A trial before the picture
+//! [learns](LightTable::learn) how often each light is worth a shadow ray. It leaves a tenth to the table by power, too.
 
 use super::Light;
 use super::tree::{LightBounds, LightTree};
@@ -13,7 +16,7 @@ use etalon_scene::LightSelection;
 
 /// Share of the choices that is spread evenly over the lights, so that a dim light beside the point is still found.
 const EVEN_SHARE: f64 = 0.1;
-/// Share of the choices that a tree leaves to the table.
+/// Share of the choices that a tree, or what was learned, leaves to the table by power.
 const TABLE_SHARE: f64 = 0.1;
 /// Lights with a place from which a tree is made where the scene leaves it open.
 const TREE_FROM: usize = 8;
@@ -22,9 +25,10 @@ const TREE_FROM: usize = 8;
 #[derive(Clone, Debug, Default)]
 pub struct LightTable {
     lights: Vec<Light>,
-    /// By power.
-    table: Table,
+    by_power: Table,
     near: Option<Near>,
+    /// Which of the [groups](Self::groups) is chosen, if a trial has learned that.
+    learned: Option<Table>,
 }
 
 /// Cumulative probabilities; the last is 1.
@@ -50,11 +54,16 @@ impl Table {
     }
 
     fn choose(&self, u: f64) -> usize {
-        self.0.partition_point(|&c| c <= u)
+        self.0.partition_point(|&c| c <= u).min(self.0.len() - 1)
+    }
+
+    /// The sum of the probabilities before this one.
+    fn before(&self, index: usize) -> f64 {
+        if index == 0 { 0.0 } else { self.0[index - 1] }
     }
 
     fn probability(&self, index: usize) -> f64 {
-        self.0[index] - if index == 0 { 0.0 } else { self.0[index - 1] }
+        self.0[index] - self.before(index)
     }
 }
 
@@ -64,10 +73,10 @@ struct Near {
     tree: LightTree,
     /// Which light each of the tree's is.
     within: Vec<u32>,
-    /// Those that are nowhere, such as a sky, or not always at one place, by power; and the part of the choices that is theirs.
+    /// Those that are nowhere, such as a sky, or not always at one place.
     beyond: Vec<u32>,
-    beyond_table: Table,
-    beyond_share: f64,
+    /// By power: each of those beyond, then all of the tree.
+    by_power: Table,
     /// Of each light, its number in the tree or among those beyond.
     number: Vec<Number>,
 }
@@ -98,34 +107,43 @@ impl Near {
             })
             .collect();
         let tree = LightTree::new(&bounds)?;
-        let power_of = |of: &[u32]| of.iter().map(|&index| powers[index as usize]).sum::<f64>();
-        let beyond_share = power_of(&beyond) / (power_of(&beyond) + power_of(&within));
-        let beyond_table = Table::new(beyond.iter().map(|&index| powers[index as usize]), EVEN_SHARE);
-        Some(Self { tree, within, beyond, beyond_table, beyond_share, number })
+        let power_within: f64 = within.iter().map(|&index| powers[index as usize]).sum();
+        let groups: Vec<f64> = beyond.iter().map(|&index| powers[index as usize]).chain([power_within]).collect();
+        Some(Self { tree, within, beyond, by_power: Table::new(groups.into_iter(), 0.0), number })
     }
 
-    /// A light and its probability.
-    fn choose(&self, from: Vec3<f64>, u: f64) -> Option<(usize, f64)> {
-        if u < self.beyond_share {
-            let number = self.beyond_table.choose(u / self.beyond_share).min(self.beyond.len() - 1);
-            return Some((self.beyond[number] as usize, self.beyond_share * self.beyond_table.probability(number)));
+    /// A light and its probability, where these are the probabilities of those beyond and of the tree.
+    fn choose(&self, groups: &Table, from: Vec3<f64>, u: f64) -> Option<(usize, f64)> {
+        let group = groups.choose(u);
+        let of_group = groups.probability(group);
+        if let Some(&light) = self.beyond.get(group) {
+            return Some((light as usize, of_group));
         }
-        let u = (u - self.beyond_share) / (1.0 - self.beyond_share);
+        let u = (u - groups.before(group)) / of_group;
         let (light, probability) = self.tree.choose(from, u.min(1.0 - f64::EPSILON))?;
-        Some((self.within[light as usize] as usize, (1.0 - self.beyond_share) * probability))
+        Some((self.within[light as usize] as usize, of_group * probability))
     }
 
-    fn probability(&self, index: usize, from: Vec3<f64>) -> f64 {
+    fn probability(&self, groups: &Table, index: usize, from: Vec3<f64>) -> f64 {
+        let of_group = groups.probability(self.group(index));
         match self.number[index] {
-            Number::Within(light) => (1.0 - self.beyond_share) * self.tree.probability(from, light),
-            Number::Beyond(light) => self.beyond_share * self.beyond_table.probability(light as usize),
+            Number::Within(light) => of_group * self.tree.probability(from, light),
+            Number::Beyond(_) => of_group,
+        }
+    }
+
+    /// The group of a light: those beyond by themselves, the tree last.
+    fn group(&self, index: usize) -> usize {
+        match self.number[index] {
+            Number::Within(_) => self.beyond.len(),
+            Number::Beyond(number) => number as usize,
         }
     }
 }
 
-/// The probability of a light by the table and by the tree.
-fn mix(by_power: f64, by_place: f64) -> f64 {
-    TABLE_SHARE * by_power + (1.0 - TABLE_SHARE) * by_place
+/// The probability by the table and by what else is known.
+fn mix(by_power: f64, otherwise: f64) -> f64 {
+    TABLE_SHARE * by_power + (1.0 - TABLE_SHARE) * otherwise
 }
 
 impl LightTable {
@@ -155,14 +173,14 @@ impl LightTable {
         });
         let (lights, powers): (Vec<_>, Vec<_>) =
             lights.iter().cloned().zip(powers).filter(|&(_, power)| power > 0.0).unzip();
-        let table = Table::new(powers.iter().copied(), EVEN_SHARE);
+        let by_power = Table::new(powers.iter().copied(), EVEN_SHARE);
         let by_place = match selection {
             LightSelection::Power => false,
             LightSelection::Tree => true,
             LightSelection::Auto => lights.iter().filter(|light| light.bounds().is_some()).count() >= TREE_FROM,
         };
         let near = if by_place { Near::new(&lights, &powers) } else { None };
-        Self { lights, table, near }
+        Self { lights, by_power, near, learned: None }
     }
 
     /// The power of all lights at a wavelength, nm, in a scene of this radius.
@@ -205,27 +223,77 @@ impl LightTable {
     /// shines.
     #[inline]
     pub fn choose(&self, from: Vec3<f64>, u: f64) -> Option<(usize, f64)> {
-        let by_power = |u: f64| self.table.choose(u).min(self.lights.len() - 1);
+        let groups = self.groups();
         let Some(near) = &self.near else {
-            let index = by_power(u);
-            return Some((index, self.table.probability(index)));
+            let index = groups.choose(u);
+            return Some((index, groups.probability(index)));
         };
         if u < TABLE_SHARE {
-            let index = by_power(u / TABLE_SHARE);
+            let index = self.by_power.choose(u / TABLE_SHARE);
             return Some((index, self.probability(index, from)));
         }
-        let (index, by_place) = near.choose(from, (u - TABLE_SHARE) / (1.0 - TABLE_SHARE))?;
-        Some((index, mix(self.table.probability(index), by_place)))
+        let (index, otherwise) = near.choose(groups, from, (u - TABLE_SHARE) / (1.0 - TABLE_SHARE))?;
+        Some((index, mix(self.by_power.probability(index), otherwise)))
     }
 
     /// The probability of a light for shadow rays from a point.
     #[inline]
     pub fn probability(&self, index: usize, from: Vec3<f64>) -> f64 {
-        let by_power = self.table.probability(index);
         match &self.near {
-            None => by_power,
-            Some(near) => mix(by_power, near.probability(index, from)),
+            None => self.groups().probability(index),
+            Some(near) => mix(self.by_power.probability(index), near.probability(self.groups(), index, from)),
         }
+    }
+
+    /// Groups between which a trial decides: each light by itself, but those of a tree together.
+    fn groups(&self) -> &Table {
+        self.learned.as_ref().unwrap_or(match &self.near {
+            None => &self.by_power,
+            Some(near) => &near.by_power,
+        })
+    }
+
+    /// The group of a light.
+    pub(crate) fn group(&self, light: usize) -> usize {
+        self.near.as_ref().map_or(light, |near| near.group(light))
+    }
+
+    /// How often each group is chosen: as it is, and as it would be with these shares.
+    pub(crate) fn shares(&self, learned: Option<&[f64]>) -> Vec<f64> {
+        let count = self.groups().0.len();
+        let of_group = |group: usize| match (&self.near, learned) {
+            (None, None) => self.groups().probability(group),
+            (_, Some(learned)) => mix(self.power_of_group(group), learned[group]),
+            (Some(_), None) => mix(self.power_of_group(group), self.groups().probability(group)),
+        };
+        (0..count).map(of_group).collect()
+    }
+
+    /// The probability of a group by the power of its lights.
+    fn power_of_group(&self, group: usize) -> f64 {
+        let by_power = |light: usize| self.by_power.probability(light);
+        match &self.near {
+            None => by_power(group),
+            Some(near) => match near.beyond.get(group) {
+                Some(&light) => by_power(light as usize),
+                None => near.within.iter().map(|&light| by_power(light as usize)).sum(),
+            },
+        }
+    }
+
+    /// Chooses groups as often as these shares say, whose sum is 1, but for what is left to power; or by power alone.
+    pub(crate) fn learn(&mut self, shares: Option<&[f64]>) {
+        self.learned = shares.map(|learned| {
+            let mixed = self.shares(shares);
+            // A tree leaves its part to the table anyway.
+            let weights = if self.near.is_some() { learned } else { &mixed };
+            Table::new(weights.iter().copied(), 0.0)
+        });
+    }
+
+    /// Whether a trial has learned how often lights are chosen.
+    pub fn has_learned(&self) -> bool {
+        self.learned.is_some()
     }
 }
 
@@ -244,123 +312,4 @@ pub(crate) fn weighted_sum(spectrum: &PathSpectrum, [first, last]: [f64; 2], mor
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::light::{AreaLight, DirectionalLight, Emitter, EnvironmentLight, PointLight, SpotLight};
-    use etalon_geometry::{Cylinder, Disk, Parallelogram, Primitive, PrimitiveId, Sphere, Triangle};
-    use etalon_optics::{Spectrum, Vec3};
-    use etalon_scene::{EnvironmentImage, EnvironmentProjection, Image, LightSampling, Texels};
-    use std::f64::consts::PI;
-    use std::sync::Arc;
-
-    fn white_sky() -> EnvironmentImage {
-        EnvironmentImage {
-            image: Arc::new(Image::new(2, 3, Texels::F32(vec![[1.0; 3]; 6]))),
-            name: String::new(),
-            projection: EnvironmentProjection::LatitudeLongitude,
-            forward: [1.0, 0.0, 0.0],
-            right: [0.0, -1.0, 0.0],
-            up: [0.0, 0.0, 1.0],
-            white: Spectrum::ONE,
-        }
-    }
-
-    fn area(shape: impl Into<Primitive>, emitter: Emitter) -> Light {
-        Light::Area(AreaLight::new(&shape.into(), emitter).unwrap())
-    }
-
-    /// Radiant power of a surface is π times radiance, area and sides, of a point 4π times intensity, of parallel light the
-    /// irradiance on the scene's disk, of a sky 4π times that. Only the noise depends on it.
-    #[test]
-    fn lights_are_chosen_by_their_power() {
-        let (x, y) = (Vec3::new(2.0, 0.0, 0.0), Vec3::new(0.0, 3.0, 0.0));
-        let shines = |front, back| Emitter {
-            radiance: PathSpectrum::Constant(1.0).into(),
-            front,
-            back,
-            surface: PrimitiveId(0).into(),
-            image: None,
-        };
-        let one = || PathSpectrum::Constant(1.0);
-        let point = || PointLight { position: Vec3::ZERO, intensity: one(), per_m: 2.0 };
-        let lights = vec![
-            area(Sphere::new(Vec3::ZERO, 2.0).unwrap(), shines(true, false)),
-            area(Parallelogram::new(Vec3::ZERO, x, y).unwrap(), shines(true, true)),
-            area(Disk::new(Vec3::ZERO, Vec3::new(0.0, 0.0, 1.0), 3.0).unwrap(), shines(false, true)),
-            area(Triangle::new(Vec3::ZERO, x, y).unwrap(), shines(true, true)),
-            area(Cylinder::new(Vec3::ZERO, x, 1.5, false).unwrap(), shines(true, false)),
-            Light::Point(point()),
-            Light::Spot(SpotLight { point: point(), axis: Vec3::new(0.0, 0.0, 1.0), cosines: [0.8, 0.5] }),
-            Light::Directional(DirectionalLight { toward: Vec3::new(0.0, 0.0, 1.0), irradiance: one() }),
-            Light::Environment(Arc::new(EnvironmentLight::new(&white_sky(), [360.0, 830.0], LightSampling::Mis))),
-        ];
-        // A spot's smooth edge lets half of the light between its cosines pass: 2π(1 − .65) of the sphere. Half a metre is 1 here.
-        let of_points = [4.0 * 4.0, 2.0 * 4.0 * (1.0 - 0.65)];
-        let powers = [16.0 * PI, 2.0 * 6.0, 9.0 * PI, 2.0 * 3.0, 2.0 * PI * 1.5 * 2.0]
-            .into_iter()
-            .chain(of_points)
-            .chain([25.0, 25.0 * 4.0 * PI])
-            .map(|power: f64| power * PI)
-            .collect::<Vec<_>>();
-        let total: f64 = powers.iter().sum();
-        let table = LightTable::new(lights, 5.0, [360.0, 830.0], LightSelection::Auto);
-        let from = Vec3::ZERO;
-        for (i, power) in powers.iter().enumerate() {
-            let share = 0.9 * power / total + 0.1 / 9.0;
-            assert!(
-                (table.probability(i, from) - share).abs() < 1e-14,
-                "{i}: {} is not {share}",
-                table.probability(i, from)
-            );
-        }
-    }
-
-    /// Suns and a sky have no place in a tree.
-    #[test]
-    fn lights_within_a_tree_and_beyond_it_are_chosen_as_often_as_is_said() {
-        let shines = |radiance: f64| Emitter {
-            radiance: PathSpectrum::Constant(radiance).into(),
-            front: true,
-            back: false,
-            surface: PrimitiveId(0).into(),
-            image: None,
-        };
-        let ball = |x: f64, radius: f64| Sphere::new(Vec3::new(x, 0.5, -0.25), radius).unwrap();
-        let sun = |irradiance: f64| {
-            let (toward, irradiance) = (Vec3::new(0.0, 0.0, 1.0), PathSpectrum::Constant(irradiance));
-            Light::Directional(DirectionalLight { toward, irradiance })
-        };
-        let lights = vec![
-            sun(0.5),
-            area(ball(-3.0, 0.5), shines(10.0)),
-            area(ball(0.0, 0.25), shines(20.0)),
-            Light::Environment(Arc::new(EnvironmentLight::new(&white_sky(), [360.0, 830.0], LightSampling::Mis))),
-            area(ball(4.0, 1.0), shines(5.0)),
-            sun(3.0),
-        ];
-        let count = lights.len();
-        let table = LightTable::new(lights, 5.0, [360.0, 830.0], LightSelection::Tree);
-        assert!(table.chooses_by_place());
-        for from in [Vec3::new(0.0, 2.0, 0.0), Vec3::new(-2.0, 0.5, 0.0), Vec3::new(30.0, -4.0, 2.0)] {
-            const STEPS: u32 = 100_000;
-            let mut chosen = vec![0_u32; count];
-            for i in 0..STEPS {
-                let (index, probability) = table.choose(from, (f64::from(i) + 0.5) / f64::from(STEPS)).unwrap();
-                chosen[index] += 1;
-                assert!((probability / table.probability(index, from) - 1.0).abs() < 1e-12, "{index}");
-            }
-            for (index, chosen) in chosen.into_iter().enumerate() {
-                let (found, told) = (f64::from(chosen) / f64::from(STEPS), table.probability(index, from));
-                // What chooses a light are two intervals, of which each end is off by a step at most.
-                assert!(told > 0.0 && (found - told).abs() < 4.0 / f64::from(STEPS), "{index}: {found} is not {told}");
-            }
-        }
-    }
-
-    #[test]
-    fn a_spectrum_counts_by_what_an_observer_makes_of_it() {
-        // x̄, ȳ and z̄ have the same integral, 106.857 nm; the floor adds 0.47.
-        let mean = visible_sum(&PathSpectrum::Constant(1.0), [360.0, 830.0]) * 470.0 / 256.0;
-        assert!((mean - (3.0 * 106.857 + 0.47)).abs() < 0.1, "{mean}");
-    }
-}
+mod tests;

@@ -5,6 +5,7 @@ use crate::film::{Counters, PixelRect, Sums};
 use crate::guiding::{NO_TARGETS, SpecularObjects};
 use crate::integrator::connection_trial::{ConnectionTrial, try_connections};
 use crate::integrator::film_entry::{FilmEntry, SampleId};
+use crate::integrator::light_choice_trial::{LightChoiceTrial, try_light_choice};
 use crate::integrator::light_tracing::trial::{CameraTrial, try_camera_paths};
 use crate::integrator::light_tracing::{Connection, trace_light_path};
 use crate::integrator::replay::{Replay, replay};
@@ -17,6 +18,7 @@ use crate::plan::kernels::{self, KernelKind, LANES};
 use crate::polarisation::{Averaged, Followed, Polarisation};
 use crate::scene::prepare::Prepared;
 use crate::wavelength::guide::Regions;
+use etalon_scene::LightSampling;
 use std::ops::Range;
 
 /// Adds samples to the sums of pixels: pixel by pixel, and in each pixel replicate by replicate. Where the last slice is not empty, adds
@@ -46,6 +48,8 @@ pub(crate) struct Kernel {
     pub render_reused: Option<RenderPixels>,
     /// Traces a sample once more and tells what happened. Takes the column and row of its pixel, and its number.
     pub replay: fn(&Prepared, u32, u32, u32) -> Replay,
+    /// Tells how often each light is worth a shadow ray, by a trial with random numbers of a seed.
+    pub try_light_choice: fn(&Prepared, u64, Option<LightSampling>) -> LightChoiceTrial,
     /// Tells what guided targets of caustics would win, by a trial with random numbers of a seed.
     pub try_guided_targets: fn(&Prepared, u64) -> Trial,
     /// Tells what specular connections bring and take, by a trial with random numbers of a seed.
@@ -77,6 +81,7 @@ const fn entry<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(kind: 
         render_batch: render_batch::<M, P, N>,
         render_reused: None,
         replay: replay::<M, P, N>,
+        try_light_choice: try_light_choice::<M, P, N>,
         try_guided_targets: try_guided_targets::<M, P, N>,
         try_connections: try_connections::<M, P, N>,
         trace_light_paths: trace_light_paths::<M, P, N>,

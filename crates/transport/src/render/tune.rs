@@ -11,7 +11,7 @@ use crate::scene::coincidence;
 use crate::scene::prepare::{Prepared, build};
 use crate::scene::prepare_error::PrepareError;
 use crate::wavelength::guide::Regions;
-use etalon_scene::{LightTracing, Scene};
+use etalon_scene::{LightSampling, LightSelection, LightTracing, Scene};
 
 /// What must be left of the variance. Much, since the trial knows of no strata: where the picture's samples would be spread evenly over
 /// directions, a share taken from them costs more than it foretells; and paths through guided targets are longer.
@@ -75,9 +75,29 @@ impl Prepared {
         // An earlier frame may have found otherwise, and each trial depends on what those before it have found.
         self.wavelength_guide = None;
         self.specular_objects = None;
+        self.tune_light_choice(seed);
         self.tune_camera_paths(seed);
         self.tune_light_tracing(seed);
         self.tune_wavelengths(seed);
+    }
+
+    /// Learns how often each light is worth a shadow ray, where the scene leaves that open.
+    fn tune_light_choice(&mut self, seed: u64) {
+        self.lights.learn(None);
+        let integrator = &self.scene.integrator;
+        let open =
+            integrator.light_selection == LightSelection::Auto && integrator.light_sampling != LightSampling::Bsdf;
+        if !open || self.lights.lights().len() < 2 {
+            return;
+        }
+        let try_it = |prepared: &Self, sampling| (prepared.kernel().try_light_choice)(prepared, seed, sampling);
+        let by_power = try_it(self, None);
+        let by_shadow_rays = try_it(self, Some(LightSampling::Light));
+        let Some(shares) = by_shadow_rays.shares(&self.lights, &by_power) else { return };
+        self.lights.learn(Some(&shares));
+        if !try_it(self, None).is_better_than(&by_power) {
+            self.lights.learn(None);
+        }
     }
 
     fn tune_camera_paths(&mut self, seed: u64) {

@@ -330,6 +330,12 @@ impl Prepared {
         (self.lights.lights().len(), self.lights.chooses_by_place())
     }
 
+    /// The share of the shadow rays that a trial gave each light, or each light beyond the tree and then all of the tree. `None` where power alone
+    /// decides.
+    pub fn learned_light_shares(&self) -> Option<Vec<f64>> {
+        self.lights.has_learned().then(|| self.lights.shares(None))
+    }
+
     /// Of a camera with a compound lens: sin θ₀ of the cone of light that reaches the middle of the film, traced at the line d. Its pixels
     /// are irradiances over π sin²θ₀.
     pub fn image_numerical_aperture(&self) -> Option<f64> {

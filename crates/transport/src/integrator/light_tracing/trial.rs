@@ -7,7 +7,7 @@ use super::{LIGHT_RAY, splats};
 use crate::film::Counters;
 use crate::guiding::SpecularObjects;
 use crate::integrator::tracer::Tracer;
-use crate::integrator::trial::{SAMPLES, Tried};
+use crate::integrator::trial::{SAMPLES, Scales, Tried};
 use crate::integrator::wavelength_lanes::WavelengthModel;
 use crate::polarisation::Polarisation;
 use crate::scene::prepare::Prepared;
@@ -66,28 +66,6 @@ struct Cost {
     light: f64,
     variances: [f64; 2],
     rays: f64,
-}
-
-/// What the variance of each pixel counts against: the square of the level about it, as it is seen, and that of the whole picture, as its error is
-/// stated.
-struct Scales {
-    about: Vec<f64>,
-    of_all: f64,
-}
-
-impl Scales {
-    fn new(tried: &Tried, means: &[f64]) -> Self {
-        let mean = means.iter().sum::<f64>() / means.len() as f64;
-        Self { about: tried.levels(means).into_iter().map(|(_, scale)| scale).collect(), of_all: mean * mean }
-    }
-
-    /// The sums of the variances of all pixels.
-    fn sums(&self, variances: impl Iterator<Item = f64>) -> [f64; 2] {
-        let against = |variance: f64, scale: f64| if scale > 0.0 { variance / scale } else { 0.0 };
-        variances.zip(&self.about).fold([0.0; 2], |sums, (variance, about)| {
-            [sums[0] + against(variance, *about), sums[1] + against(variance, self.of_all)]
-        })
-    }
 }
 
 /// What a trial found.
