@@ -7,7 +7,7 @@
 use crate::film::Counters;
 use crate::integrator::observer::{Found, Observer};
 use crate::integrator::tracer::Tracer;
-use crate::integrator::trial::{SAMPLES, Scales, Tried};
+use crate::integrator::trial::{Scales, Tried};
 use crate::integrator::wavelength_lanes::WavelengthModel;
 use crate::light::LightTable;
 use crate::polarisation::Polarisation;
@@ -17,7 +17,8 @@ use etalon_scene::LightSampling;
 
 /// Fewest paths of a trial: of a picture of few pixels each has more samples.
 const FEWEST_PATHS: u32 = 1024;
-/// What must be left of either variance.
+/// What must seem to be left of the variances, in their mean, for a further trial; and of either in the end.
+const PROMISING: f64 = 0.9;
 const WORTH_IT: f64 = 0.95;
 
 /// What the paths of some pixels came to, against two [scales](Scales).
@@ -44,11 +45,13 @@ impl<const N: usize> Observer<N> for ByGroup<'_> {
     }
 }
 
-/// A trial by one kernel, in some pixels of the picture, evenly spread, with random numbers of a seed; and with this instead of MIS, if any.
+/// A trial by one kernel, in some pixels of the picture, evenly spread, with random numbers of a seed; with this instead of MIS, if any, and so many
+/// samples of each pixel.
 pub(crate) fn try_light_choice<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
     prepared: &Prepared,
     seed: u64,
     sampling: Option<LightSampling>,
+    samples: u32,
 ) -> LightChoiceTrial {
     let tried = Tried::of(prepared);
     let mut tracer = Tracer::new(prepared);
@@ -56,7 +59,7 @@ pub(crate) fn try_light_choice<M: WavelengthModel<N>, P: Polarisation<N>, const 
     tracer.world.light_sampling = sampling.unwrap_or(tracer.world.light_sampling);
     let lights = &prepared.lights;
     let groups = lights.shares(None).len();
-    let samples = SAMPLES.max(FEWEST_PATHS / tried.count());
+    let samples = samples.max(FEWEST_PATHS / tried.count());
     let of_pixels = tried.map(|x, y| {
         let (mut mean, mut square, mut squares) = (0.0, 0.0, vec![0.0; groups]);
         let mut counters = Counters::default();
@@ -83,15 +86,18 @@ pub(crate) fn try_light_choice<M: WavelengthModel<N>, P: Polarisation<N>, const 
 }
 
 impl LightChoiceTrial {
-    /// The shares of the groups that leave the least of both variances that were found by power. `None` if shadow rays bring nothing.
-    pub(crate) fn shares(&self, lights: &LightTable, by_power: &Self) -> Option<Vec<f64>> {
-        let worth = |(square, share): (&[f64; 2], f64)| {
-            let [about, of_all] = [0, 1].map(|kind| square[kind] / by_power.variances[kind]);
-            ((about + of_all) * share).sqrt()
-        };
-        let worth: Vec<f64> = self.squares.iter().zip(lights.shares(None)).map(worth).collect();
+    /// The shares of the groups that leave the least of both variances, if that promises something.
+    pub(crate) fn shares(&self, lights: &LightTable) -> Option<Vec<f64>> {
+        let tried = lights.shares(None);
+        let part = |square: &[f64; 2]| (0..2).map(|kind| 0.5 * square[kind] / self.variances[kind]).sum::<f64>();
+        let parts: Vec<f64> = self.squares.iter().map(part).collect();
+        let worth: Vec<f64> = parts.iter().zip(&tried).map(|(part, share)| (part * share).sqrt()).collect();
         let total: f64 = worth.iter().sum();
-        total.is_normal().then(|| worth.iter().map(|worth| worth / total).collect())
+        let learned: Vec<f64> = worth.iter().map(|worth| worth / total).collect();
+        let then = lights.shares(Some(&learned));
+        let change = |((part, tried), then): ((&f64, &f64), &f64)| part * (tried / then - 1.0);
+        let left = 1.0 + parts.iter().zip(&tried).zip(&then).map(change).sum::<f64>();
+        (left < PROMISING).then_some(learned)
     }
 
     /// Whether less noise is left than by power.
@@ -103,6 +109,25 @@ impl LightChoiceTrial {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::light::{DirectionalLight, Light};
+    use crate::spectral::PathSpectrum;
+    use etalon_optics::Vec3;
+    use etalon_scene::LightSelection;
+
+    #[test]
+    fn a_hidden_light_gets_little_if_the_others_bring_the_noise() {
+        let sun = |irradiance: f64| {
+            let irradiance = PathSpectrum::Constant(irradiance);
+            Light::Directional(DirectionalLight { toward: Vec3::new(0.0, 0.0, 1.0), irradiance })
+        };
+        let lights = LightTable::new(vec![sun(1.0), sun(3.0)], 1.0, [360.0, 830.0], LightSelection::Auto);
+        let trial = |squares| LightChoiceTrial { variances: [2.0, 4.0], squares };
+        assert_eq!(trial(vec![[2.0, 4.0], [0.0, 0.0]]).shares(&lights), Some(vec![1.0, 0.0]));
+        // In the mean over both measures each brings 0.05 of the variance: so little cannot be won.
+        assert_eq!(trial(vec![[0.2, 0.0], [0.0, 0.4]]).shares(&lights), None);
+        // Light that no shadow ray brings.
+        assert_eq!(trial(vec![[0.0; 2]; 2]).shares(&lights), None);
+    }
 
     #[test]
     fn noise_that_is_less_by_one_measure_alone_is_not_worth_it() {

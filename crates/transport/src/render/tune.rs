@@ -4,7 +4,7 @@ use crate::guiding::SpecularObjects;
 use crate::guiding::{GuidedBy, USUAL_SHARES};
 use crate::integrator::light_tracing::find_specular_objects;
 use crate::integrator::light_tracing::trial::light_paths_per_pixel;
-use crate::integrator::trial::{SHARES, TRIED};
+use crate::integrator::trial::{SAMPLES, SHARES, TRIED};
 use crate::plan::{EffectName, LaneModel, Study};
 use crate::sampler::mix;
 use crate::scene::coincidence;
@@ -90,12 +90,15 @@ impl Prepared {
         if !open || self.lights.lights().len() < 2 {
             return;
         }
-        let try_it = |prepared: &Self, sampling| (prepared.kernel().try_light_choice)(prepared, seed, sampling);
-        let by_power = try_it(self, None);
-        let by_shadow_rays = try_it(self, Some(LightSampling::Light));
-        let Some(shares) = by_shadow_rays.shares(&self.lights, &by_power) else { return };
+        let try_it = |prepared: &Self, sampling, samples| {
+            (prepared.kernel().try_light_choice)(prepared, seed, sampling, samples)
+        };
+        let by_shadow_rays = |samples| try_it(self, Some(LightSampling::Light), samples).shares(&self.lights);
+        // Few paths say whether more are worth their time.
+        let Some(shares) = by_shadow_rays(1).and_then(|_| by_shadow_rays(SAMPLES)) else { return };
+        let by_power = try_it(self, None, SAMPLES);
         self.lights.learn(Some(&shares));
-        if !try_it(self, None).is_better_than(&by_power) {
+        if !try_it(self, None, SAMPLES).is_better_than(&by_power) {
             self.lights.learn(None);
         }
     }
