@@ -20,6 +20,7 @@ mod instruments;
 mod invariances;
 mod kernels;
 mod left_out;
+mod light_choice;
 mod lights;
 mod lights_add_up;
 mod many_paths;
