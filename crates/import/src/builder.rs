@@ -14,6 +14,7 @@ use serde_json::{Map, Value, json};
 
 use crate::budget::{Budget, FreshNames};
 use crate::matrix::steps;
+use crate::medium::exchange_sides;
 use crate::relief::turn_over;
 use crate::sides::change_sides;
 use crate::{Imported, LeftOut, Loss, TakenOver};
@@ -239,6 +240,7 @@ impl<'a> Builder<'a> {
                 material = own.clone();
                 material["interior"] = own.get("exterior").cloned().unwrap_or(json!(1));
                 material["exterior"] = own["interior"].clone();
+                exchange_sides(&mut material, self.medium.as_ref());
             }
             let mut turned = own.clone();
             change_sides(&mut turned, &|sides| match sides {

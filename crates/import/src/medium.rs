@@ -103,6 +103,22 @@ pub(crate) fn fill(material: &mut Value, opacity: &mut f64, has_holes: bool, med
     true
 }
 
+/// Exchanges what fills the two sides of a dielectric, if it states that; `around` is what surrounds the scene.
+pub(crate) fn exchange_sides(material: &mut Value, around: Option<&Value>) {
+    let Some(keys) = material.as_object_mut() else { return };
+    let absorption = keys.remove("absorption_per_m").map(|per_m| json!({ "absorption_per_m": per_m }));
+    let inside = keys.remove("medium").or(absorption);
+    let outside = keys.remove("exterior_medium");
+    if inside.is_none() && outside.is_none() {
+        return;
+    }
+    // An interior without a medium is clear; an exterior without one holds what is around.
+    if let Some(medium) = outside.or_else(|| around.cloned()) {
+        keys.insert("medium".to_owned(), medium);
+    }
+    keys.insert("exterior_medium".to_owned(), inside.unwrap_or_else(|| json!({ "absorption_per_m": 0 })));
+}
+
 /// Whether a path may be behind the surface of a material: it lets light in, or it scatters light there.
 fn has_inside(material: &Value) -> bool {
     match material["type"].as_str() {

@@ -115,6 +115,35 @@ fn many_paths_at_once_leave_the_film_of_one_at_a_time_where_the_camera_sees_no_l
     }
 }
 
+/// A shell of glass that holds milk, which states the glass, with a bubble that states the milk and a ball in it.
+#[test]
+fn many_paths_at_once_leave_the_film_of_one_at_a_time_where_glass_states_what_is_outside_of_it() {
+    for scattering in [0.0, 1.5] {
+        let text = format!(
+            r#"{{
+            "etalon": 1, "film": {{ "width": 22, "height": 17 }}, "integrator": {{ "spp": 4 }},
+            "camera": {{ "type": "perspective", "position_m": [0, 1, 4], "look_at_m": [0, 0, 0], "vertical_fov_deg": 45 }},
+            "lights": [{{ "type": "environment", "radiance": 0.5 }}],
+            "materials": {{
+                "milk": {{ "type": "dielectric", "interior": 1.34, "exterior": 1.5, "exterior_medium": {{ "absorption_per_m": 0.3 }},
+                    "medium": {{ "absorption_per_m": 0.5, "scattering_per_m": {scattering} }} }},
+                "bubble": {{ "type": "dielectric", "interior": 1, "exterior": 1.34,
+                    "exterior_medium": {{ "absorption_per_m": 0.5, "scattering_per_m": {scattering} }} }}
+            }},
+            "objects": [
+                {{ "shape": {{ "type": "sphere", "radius_m": 1 }}, "material": {{ "type": "dielectric", "interior": 1.5 }} }},
+                {{ "shape": {{ "type": "sphere", "radius_m": 0.8 }}, "material": "milk" }},
+                {{ "shape": {{ "type": "sphere", "center_m": [-0.3, 0, 0.3], "radius_m": 0.2 }}, "material": "bubble" }},
+                {{ "shape": {{ "type": "sphere", "center_m": [0.3, 0, 0], "radius_m": 0.2 }}, "material": {{ "type": "lambert", "reflectance": 0.5 }} }},
+                {{ "shape": {{ "type": "sphere", "center_m": [0.3, 2.8, 2], "radius_m": 0.4 }}, "material": {{ "type": "black" }},
+                   "emission": {{ "radiance": 20 }} }}
+            ] }}"#
+        );
+        let scene = parse_with_files(&text, "stated", &[], None).unwrap_or_else(|errors| panic!("{errors}")).scene;
+        agrees(&format!("scattering {scattering}"), &scene, &Study::default());
+    }
+}
+
 /// In blends, on one side, turned, below lamps, with and without polarisation.
 #[test]
 fn many_paths_at_once_leave_the_film_of_one_at_a_time_on_measured_surfaces() {

@@ -148,6 +148,7 @@ CASES = [
     of("hollow", integrator="volpath", depth=32),
     # Shadow rays do not reach into glass: under the sky alone there is little noise.
     of("milk", integrator="volpath", depth=32, lamp=0.01, sky=1),
+    of("juice", samples=2, integrator="volpath", depth=32, lamp=0.01, sky=1),
     of("cloud", integrator="volpath", depth=32),
     of("filled-principled", samples=2, integrator="volpath", depth=32, lamp=0.01, sky=1),
     of("filled-mask", integrator="volpath", depth=32),

@@ -12,6 +12,11 @@ pub(crate) type Outside = (Vec<Value>, Vec<Value>, Bounds, f64);
 /// The keys of a medium that say what it is from place to place.
 const GRIDS: [&str; 2] = ["density", "albedo_grid"];
 
+/// The keys of a material's media that may be grids: that of the medium, and its own.
+fn places_of_grids() -> impl Iterator<Item = [&'static str; 2]> {
+    ["medium", "exterior_medium"].into_iter().flat_map(|medium| GRIDS.map(|key| [medium, key]))
+}
+
 impl Builder<'_> {
     pub(crate) fn group_name(&mut self, wanted: &str) -> String {
         self.group_names.name(wanted, &self.groups)
@@ -65,14 +70,15 @@ impl Builder<'_> {
             Value::String(name) => self.materials.get(name)?,
             own => own,
         };
-        GRIDS.iter().any(|key| material["medium"][*key]["file"].is_string()).then(|| material.clone())
+        places_of_grids().any(|[medium, key]| material[medium][key]["file"].is_string()).then(|| material.clone())
     }
 
     /// Keeps the grids of an object's medium where they are in the world, though its group is placed: by the map from the world to the group.
     pub(super) fn keep_grids(&self, object: &mut Value, to_group: &DAffine3) {
         let Some(mut material) = self.material_with_grids(object) else { return };
-        for key in GRIDS {
-            let Some(grid) = material["medium"].get_mut(key).filter(|grid| grid["file"].is_string()) else { continue };
+        for [medium, key] in places_of_grids() {
+            let grid = material.get_mut(medium).and_then(|medium| medium.get_mut(key));
+            let Some(grid) = grid.filter(|grid| grid["file"].is_string()) else { continue };
             let mut transform = grid["transform"].as_array().cloned().unwrap_or_default();
             transform.push(json!({ "matrix": rows(to_group) }));
             grid["transform"] = json!(transform);

@@ -10,9 +10,6 @@ use crate::matrix::steps;
 use crate::medium::{blended, in_unit_box, means, shares, vol, without_colour};
 use crate::{coefficient, reflectance};
 
-/// Most bodies within each other that a path keeps apart.
-const MOST_NESTED: usize = 16;
-
 /// What version 0.x says of a medium, for three channels.
 struct Parts {
     albedo: [f64; 3],
@@ -28,57 +25,6 @@ struct Grid {
 }
 
 impl<'a> Walk<'a, '_, '_> {
-    /// Finds the media that fill shapes, here and in what is within.
-    pub(super) fn find_interiors(&mut self, element: &'a Element) {
-        let [inside, outside] = ["interior", "exterior"].map(|name| self.named(element, name));
-        if let Some(inside) = inside {
-            self.interiors.entry(inside).or_insert(outside);
-        }
-        element.children.iter().for_each(|child| self.find_interiors(child));
-    }
-
-    /// Whether this or something in it says that what is outside of it fills another body.
-    pub(super) fn holds_nested(&self, element: &Element) -> bool {
-        self.named(element, "exterior").is_some_and(|outside| self.interiors.contains_key(&outside))
-            || element.children.iter().any(|child| self.holds_nested(child))
-    }
-
-    /// What an element holds or refers to under a name. A reference to nothing is an error where it is read.
-    fn named(&self, element: &Element, name: &str) -> Option<*const Element> {
-        let child = element.children.iter().find(|child| child.attribute("name") == Some(name))?;
-        if child.tag == "ref" { self.ids.of(child).ok() } else { Some(child) }.map(std::ptr::from_ref)
-    }
-
-    /// Within how many bodies, itself among them, a body that a medium fills stands by what is said to be outside of it.
-    pub(super) fn nesting(&self, medium: &Element) -> usize {
-        let outside = |medium: &*const Element| self.interiors.get(medium).copied().flatten();
-        let bodies = std::iter::successors(Some(std::ptr::from_ref(medium)), outside);
-        // What is outside of itself is so without end.
-        bodies.take_while(|medium| self.interiors.contains_key(medium)).take(MOST_NESTED).count()
-    }
-
-    /// The medium that an element has under a name: "interior" or "exterior".
-    pub(super) fn stated_medium(&mut self, element: &'a Element, name: &str) -> Result<Option<&'a Element>, String> {
-        let stated = element
-            .children
-            .iter()
-            .find(|child| child.attribute("name") == Some(name) && (child.tag == "medium" || child.tag == "ref"));
-        let Some(stated) = stated else { return Ok(None) };
-        stated.mark();
-        let medium = if stated.tag == "ref" { self.ids.of(stated)? } else { stated };
-        medium.mark();
-        if medium.tag != "medium" {
-            return Err(format!("{}: a <{}> stands where a medium should", stated.place, medium.tag));
-        }
-        if let Some(integrator) = self.ignores_media {
-            let what =
-                format!("the integrator \"{integrator}\" goes through media as if they were not there: it is left out");
-            self.builder.leave_out(&medium.place, what);
-            return Ok(None);
-        }
-        Ok(Some(medium))
-    }
-
     /// The medium that a sensor is in: whatever it is called.
     pub(super) fn medium_around(&mut self, sensor: &'a Element) -> Result<Option<Value>, String> {
         let stated = sensor.nested("medium", self.ids)?.first().copied().filter(|_| self.ignores_media.is_none());

@@ -7,6 +7,7 @@ mod colour;
 mod coordinates;
 mod element;
 mod emitter;
+mod filled;
 mod material;
 mod medium;
 mod older;

@@ -12,9 +12,7 @@ use super::colour::kind;
 use super::element::Element;
 use super::material::{Look, grey};
 use super::serialized;
-use super::sheet::is_sheet;
 use crate::Placed;
-use crate::medium::fill;
 use crate::number::{WITHOUT_DIRECTIONS, has_image, has_measured_grain, without_directions};
 use crate::relief::without_map;
 use crate::vertex_colours::{self, apart, attribute_of};
@@ -168,55 +166,6 @@ impl<'a> Walk<'a, '_, '_> {
             look.material = json!(name);
         }
         self.named_looks.insert(key, look.clone());
-        Ok(look)
-    }
-
-    /// The material with what fills the shape. What stands outside of it fills another body, or surrounds everything.
-    fn filled(&mut self, element: &'a Element, mut look: Look) -> Result<Look, String> {
-        let place = &element.place;
-        let [outside, inside] = ["exterior", "interior"].map(|name| self.stated_medium(element, name));
-        let (outside, inside) = (outside?, inside?);
-        let around = outside.map_or(0, |medium| self.nesting(medium));
-        if let Some(medium) = outside.filter(|_| around == 0) {
-            let medium = self.medium(medium)?;
-            if self.builder.medium.is_none() {
-                let what = "a medium is outside of it, but the sensor is in none: here it fills all space outside, that of the camera, too";
-                self.builder.approximate(place, what);
-            }
-            self.builder.surround(medium, place);
-        }
-        let own = look.material.as_str().and_then(|name| self.builder.materials.get(name));
-        let mut material = own.unwrap_or(&look.material).clone();
-        if around > 0 && material["type"] == "dielectric" && matches!(element.plugin(), "obj" | "ply" | "serialized") {
-            let what =
-                "a medium is outside of it: if it is an open surface, light that goes out through it finds none here";
-            self.builder.approximate(place, what);
-        }
-        // Where a shape states no medium, a path stays in the one in which it is.
-        let stays = outside.is_none() && inside.is_none() && material["type"] == "dielectric";
-        if stays && self.builder.medium.is_none() && !self.interiors.is_empty() && self.ignores_media.is_none() {
-            let what = "it states no medium: where it lies in a body of fog, Mitsuba has the fog in it, too, and here it is clear";
-            self.builder.approximate(place, what);
-        }
-        let medium = match inside {
-            Some(medium) => Some(self.medium(medium)?),
-            // A hollow.
-            None if around > 0 && material["type"] == "black" && look.opacity == 0.0 => {
-                Some(json!({ "absorption_per_m": 0 }))
-            }
-            None => self.builder.medium.clone().filter(|_| stays),
-        };
-        if let Some(medium) = medium {
-            if is_sheet(&material) {
-                self.builder.leave_out(place, "the medium of a polarising sheet is left out");
-            } else if fill(&mut material, &mut look.opacity, look.detail.contains_key("opacity_image"), &medium) {
-                if material["type"] == "boundary" && self.nested {
-                    material["priority"] = json!(inside.map_or(1 + around, |medium| self.nesting(medium)));
-                }
-                self.builder.spend(&material, place)?;
-                look.material = material;
-            }
-        }
         Ok(look)
     }
 

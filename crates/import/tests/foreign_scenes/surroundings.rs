@@ -42,14 +42,11 @@ fn what_is_outside_of_a_body_fills_the_body_around_it() {
         assert!(scene.medium.is_none(), "nothing surrounds the scene");
         assert_eq!([extinction(&scene, 0), extinction(&scene, 1)], [0.5, 0.0]);
         assert_eq!([priority(&scene, 0), priority(&scene, 1)], [Some(1), own]);
+        // Glass may be an open surface between two media, which no body says.
+        let stated = &scene.materials[scene.objects[1].material].exterior_medium;
+        assert_eq!(stated.as_ref().map(|medium| medium.absorption.eval(500.0)), own.is_none().then_some(0.5));
         assert_eq!(said, Vec::<String>::new());
     }
-    // A mesh may be an open surface between two media, which no body says.
-    let open = format!(
-        r#"{FOG}<shape type="obj"><string name="filename" value="a.obj"/>{GLASS}<ref name="exterior" id="haze"/></shape>"#
-    );
-    let (_, said) = with_haze("volpath", "", &open);
-    assert!(matches!(&said[..], [what] if what.contains("if it is an open surface")), "{said:?}");
     // A medium of its own, three deep, in any order.
     let smoke = |name: &str, more: &str| {
         format!(
@@ -76,9 +73,29 @@ fn what_is_outside_of_a_body_fills_the_body_around_it() {
     let alone = format!(r#"<shape type="sphere">{GLASS}<ref name="exterior" id="haze"/></shape>"#);
     let (scene, said) = with_haze("volpath", r#"<ref id="haze"/>"#, &alone);
     assert!(scene.medium.is_some() && said.is_empty(), "{said:?}");
+    assert!(scene.materials.iter().all(|material| material.exterior_medium.is_none()));
     let (scene, said) = with_haze("volpath", "", &alone);
-    assert!(scene.medium.is_some());
+    assert!(scene.medium.is_none() && scene.materials.iter().any(|material| material.exterior_medium.is_some()));
     assert!(matches!(&said[..], [what] if what.contains("the sensor is in none")), "{said:?}");
+}
+
+#[test]
+fn glass_that_is_turned_over_has_its_media_on_the_other_sides() {
+    let glass = |stated: &str| {
+        format!(r#"<shape type="sphere"><boolean name="flip_normals" value="true"/>{GLASS}{stated}</shape>"#)
+    };
+    let (inside, outside) = (r#"<ref name="interior" id="haze"/>"#, r#"<ref name="exterior" id="haze"/>"#);
+    for (stated, media) in [
+        (inside, [None, Some(0.5)]),
+        (outside, [Some(0.5), Some(0.0)]),
+        (&format!("{inside}{outside}"), [Some(0.5), Some(0.5)]),
+        ("", [None, None]),
+    ] {
+        let (scene, _) = with_haze("volpath", "", &glass(stated));
+        let material = &scene.materials[scene.objects[0].material];
+        let found = [&material.medium, &material.exterior_medium];
+        assert_eq!(found.map(|medium| medium.as_ref().map(|medium| medium.absorption.eval(500.0))), media, "{stated}");
+    }
 }
 
 #[test]

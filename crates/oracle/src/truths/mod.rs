@@ -27,6 +27,7 @@ mod dispersive_facets;
 mod enclosures;
 mod exchange;
 mod expectation;
+mod exteriors;
 mod facets;
 mod films;
 mod fluorescence;
@@ -377,7 +378,7 @@ pub fn truths() -> Vec<Truth> {
     LIST.clone()
 }
 
-const GROUPS: [fn() -> Vec<Truth>; 60] = [
+const GROUPS: [fn() -> Vec<Truth>; 61] = [
     lamps_behind_glass::truths,
     hidden_lights::truths,
     panes::truths,
@@ -428,6 +429,7 @@ const GROUPS: [fn() -> Vec<Truth>; 60] = [
     placed_grids::truths,
     albedo_grids::truths,
     nested_media::truths,
+    exteriors::truths,
     lit_fog::truths,
     light_paths::truths,
     phase_matrices::truths,

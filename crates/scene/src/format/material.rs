@@ -317,18 +317,20 @@ pub(crate) struct Made {
     pub(crate) kind: MaterialKind,
     /// What fills its interior.
     pub(crate) medium: Option<Medium>,
+    /// What fills the other side, where the form says so.
+    pub(crate) exterior_medium: Option<Medium>,
 }
 
 impl Made {
     /// With this name.
     pub(crate) fn named(self, name: String) -> Material {
-        Material { name, kind: self.kind, medium: self.medium }
+        Material { name, kind: self.kind, medium: self.medium, exterior_medium: self.exterior_medium }
     }
 }
 
 impl From<MaterialKind> for Made {
     fn from(kind: MaterialKind) -> Self {
-        Self { kind, medium: None }
+        Self { kind, medium: None, exterior_medium: None }
     }
 }
 
@@ -397,7 +399,7 @@ pub(crate) fn material<'f>(
         MaterialForm::Boundary(boundary) => {
             let medium = medium(boundary.medium.as_ref()?, spectra, files, reader)?;
             let priority = boundary.priority.clone().checked()?.map(|priority| priority.0 as u32);
-            return Some(Made { kind: MaterialKind::Boundary { priority }, medium: Some(medium) });
+            return Some(Made { medium: Some(medium), ..MaterialKind::Boundary { priority }.into() });
         }
         MaterialForm::Black(_) => Some(MaterialKind::Black),
     };

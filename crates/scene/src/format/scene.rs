@@ -376,7 +376,7 @@ fn warn(scene: &Scene, form: &SceneForm, reader: &mut Reader<'_>) {
     }
     let lit = scene.lights.iter().any(|light| !light.kind.is_zero());
     let glowing = scene.placed_objects().filter_map(|o| o.emission.as_ref()).any(|e| !e.is_zero());
-    let media = scene.medium.iter().chain(scene.materials.iter().filter_map(|material| material.medium.as_ref()));
+    let media = scene.medium.iter().chain(scene.materials.iter().flat_map(Material::media));
     let shining = media.filter_map(|medium| medium.shines()).next().is_some();
     if !lit && !glowing && !shining {
         let hint = "give an object an \"emission\", or add to \"lights\"".to_owned();

@@ -19,6 +19,20 @@ pub struct Material {
     pub kind: MaterialKind,
     /// What fills the side that the surface normal points away from, if it does anything to light.
     pub medium: Option<Medium>,
+    /// What fills the side that the surface normal points into. Without it, what fills the space around does.
+    pub exterior_medium: Option<Medium>,
+}
+
+impl Material {
+    /// The media that it states.
+    pub fn media(&self) -> impl Iterator<Item = &Medium> {
+        self.medium.iter().chain(&self.exterior_medium)
+    }
+
+    /// The media that it states, to be changed.
+    pub fn media_mut(&mut self) -> impl Iterator<Item = &mut Medium> {
+        self.medium.iter_mut().chain(&mut self.exterior_medium)
+    }
 }
 
 /// How the slopes of facets are distributed.

@@ -367,6 +367,26 @@ fn a_priority_replaces_the_exterior() {
 }
 
 #[test]
+fn a_medium_outside_needs_both_sides_stated() {
+    let medium = "{\"absorption_per_m\": 1}";
+    error(
+        Code::KeyConflict,
+        "$.materials.m.priority",
+        materials(&format!(
+            "{{\"m\": {{\"type\": \"dielectric\", \"interior\": 1.5, \"exterior_medium\": {medium}, «\"priority\"»: 2}}}}"
+        )),
+    );
+    error(
+        Code::KeyConflict,
+        "$.materials.m",
+        materials(&format!(
+            "{{\"m\": «{{»\"type\": \"blend\", \"weight\": 0.5, \"first\": {{\"type\": \"black\"}}, \"second\": {{\"type\": \"dielectric\", \
+             \"interior\": 1.5, \"exterior_medium\": {medium}}}}}}}"
+        )),
+    );
+}
+
+#[test]
 fn words_of_other_programs() {
     let word = Code::UnknownWord;
     hinted(

@@ -243,6 +243,8 @@ fn materials_and_spectra() {
     // −ln ¼ over 2 m.
     assert_eq!(medium("own glass"), absorbing(4.0_f64.ln() / 2.0));
     assert_eq!(medium("dispersive"), None);
+    let exterior = |name: &str| scene.materials.iter().find(|m| m.name == name).and_then(|m| m.exterior_medium.clone());
+    assert_eq!((exterior("milk"), exterior("solid")), (absorbing(0.125), None));
     let cloud = Medium {
         absorption: Spectrum::Constant(0.25),
         scattering: Spectrum::Constant(50.0),

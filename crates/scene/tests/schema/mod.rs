@@ -293,7 +293,7 @@ fn sane(text: &str) -> Result<(), TestCaseError> {
                 for nm in [first, 0.5 * (first + last), last] {
                     let good = plausible::kind(&material.kind, nm, material.medium.is_some());
                     prop_assert!(good, "{material:?} at {nm}");
-                    for medium in material.medium.iter().chain(&scene.medium) {
+                    for medium in material.media().chain(&scene.medium) {
                         let both = [&medium.absorption, &medium.scattering].map(|spectrum| spectrum.eval(nm));
                         prop_assert!(both.iter().all(|v| *v >= 0.0 && v.is_finite()), "{medium:?} at {nm}");
                     }

@@ -32,7 +32,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         let start = self.passed_at.unwrap_or(ray.origin);
         let mut length = f64::INFINITY;
         if let Some(vertex) = met {
-            self.stack.meet(vertex.interior(), vertex.meets_front());
+            self.stack.meet(vertex.stated_media(), vertex.meets_front());
             length = (vertex.point.position - start).length();
         }
         let way = Way { origin: start, direction: ray.direction, length, time: ray.time };

@@ -184,7 +184,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
             let met = world.intersect(ray, &mut walk, &mut stack, counters);
             let length = match &met {
                 Some(met) => {
-                    stack.meet(met.interior(), met.meets_front());
+                    stack.meet(met.stated_media(), met.meets_front());
                     (met.point.position - start).length()
                 }
                 None => sample.target.distance(start),
@@ -216,7 +216,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         otherwise: f64,
     ) -> Lanes<f64, N> {
         if let Some(met) = met {
-            self.stack.meet(met.interior(), met.meets_front());
+            self.stack.meet(met.stated_media(), met.meets_front());
         }
         let length = met.map_or(otherwise, |met| (met.point.position - origin).length());
         self.transmittance(world, &self.stack, &Way { origin, direction: ray.direction, length, time: ray.time })

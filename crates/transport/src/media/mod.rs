@@ -13,6 +13,9 @@
 //! **A dielectric that states both its sides** says it itself: a path that meets it from within has come through its interior, and one
 //! that goes through it goes on in there, or leaves it. What such a body holds is surrounded by its interior as long as it is not itself
 //! such a body. The same holds of a body of another material that is filled with a medium.
+//! Such a dielectric may state a medium on its other side, too. A path that meets it from there has come through that medium, and one that
+//! leaves its interior goes on in it, until it leaves the interior of another. Solids with priorities stand in it as in what surrounds the
+//! scene: where one holds a place, such a dielectric there says nothing new.
 
 mod albedo;
 mod density;
@@ -28,7 +31,9 @@ pub(crate) use interaction::{MediumInteraction, free_point};
 pub(crate) use medium::{Coefficients, Medium};
 pub(crate) use participating::{Participating, Stretch, optical_depth};
 
+use crate::frame::SceneFrame;
 use etalon_optics::RefractiveIndex;
+use etalon_scene::Material;
 
 static VACUUM: RefractiveIndex = RefractiveIndex::VACUUM;
 
@@ -54,12 +59,14 @@ pub(crate) struct MediumStack<'a> {
     /// The solids with priorities, in no order.
     places: [PlacedSolid; DEPTH],
     len: usize,
-    /// What the body around it holds that states both its sides.
-    body: Option<PlacedInterior<'a>>,
+    /// The body around it that states both its sides.
+    body: Option<PlacedMedia<'a>>,
+    /// The surface whose exterior it is in, if that states a medium there.
+    outside_of: Option<PlacedMedia<'a>>,
 }
 
 impl<'a> MediumStack<'a> {
-    pub(crate) const NOTHING: Self = Self { places: [(0, 0); DEPTH], len: 0, body: None };
+    pub(crate) const NOTHING: Self = Self { places: [(0, 0); DEPTH], len: 0, body: None, outside_of: None };
 
     /// Whether anything is in it.
     #[inline(always)]
@@ -67,20 +74,36 @@ impl<'a> MediumStack<'a> {
         self.len > 0 || self.body.is_some()
     }
 
-    /// Corrects it before a dielectric that states both its sides. Met from within, it is known to be its interior.
+    /// Corrects it before a dielectric that states both its sides. What lies on the side that is met is known if the dielectric states a
+    /// medium there, as it always does of its interior.
     #[inline(always)]
-    pub(crate) fn meet(&mut self, interior: Option<PlacedInterior<'a>>, from_front: bool) {
-        if let Some(interior) = interior.filter(|_| !from_front) {
-            self.body = Some(interior);
+    pub(crate) fn meet(&mut self, stated: Option<PlacedMedia<'a>>, from_front: bool) {
+        let Some(stated) = stated else { return };
+        if !from_front {
+            self.body = Some(stated);
+        } else if stated.0.exterior.is_some() {
+            self.body = None;
+            self.go_outside_of(stated);
+        }
+    }
+
+    /// Comes to a place outside of a body. Where a solid holds that place, what the body states ends with the solid.
+    #[inline(always)]
+    fn go_outside_of(&mut self, stated: PlacedMedia<'a>) {
+        if self.len == 0 {
+            self.outside_of = stated.0.exterior.is_some().then_some(stated);
         }
     }
 
     /// The media behind such a dielectric.
     #[inline(always)]
-    pub(crate) fn behind(&self, interior: Option<PlacedInterior<'a>>, from_front: bool) -> Self {
+    pub(crate) fn behind(&self, stated: Option<PlacedMedia<'a>>, from_front: bool) -> Self {
         let mut behind = *self;
-        if let Some(interior) = interior {
-            behind.body = from_front.then_some(interior);
+        if let Some(stated) = stated {
+            behind.body = from_front.then_some(stated);
+            if !from_front {
+                behind.go_outside_of(stated);
+            }
         }
         behind
     }
@@ -132,14 +155,27 @@ impl<'a> MediumStack<'a> {
     }
 }
 
-/// What a body holds, and the instance that places it (0 if it is in none).
-pub(crate) type PlacedInterior<'a> = (&'a Interior, u32);
+/// What lies on both sides of a surface, and the instance that places it (0 if it is in none).
+pub(crate) type PlacedMedia<'a> = (&'a StatedMedia, u32);
 
-/// What a dielectric that states both its sides holds, or a body that is filled.
+/// What lies on both sides of a dielectric that states both, or of a body that is filled. A medium is `None` if it does nothing to light.
 #[derive(Clone, Debug)]
-pub(crate) struct Interior {
-    /// What fills it, if that does anything to light.
-    pub medium: Option<Medium>,
+pub(crate) struct StatedMedia {
+    pub interior: Option<Medium>,
+    /// `None` where the surface does not say what lies there.
+    pub exterior: Option<Option<Medium>>,
+}
+
+impl StatedMedia {
+    /// Those of a material; `None` if the place decides them.
+    pub(crate) fn of(material: &Material, range_nm: [f64; 2], frame: &SceneFrame) -> Option<Self> {
+        let is_filled = material.medium.is_some() && material.kind.solid().is_none();
+        let medium = |medium| Medium::new(medium, range_nm, frame);
+        (is_filled || material.kind.media().is_some()).then(|| Self {
+            interior: material.medium.as_ref().and_then(medium),
+            exterior: material.exterior_medium.as_ref().map(medium),
+        })
+    }
 }
 
 /// The two media at an interface, along the walk from the camera.

@@ -33,11 +33,14 @@ impl<'a> Participating<'a> {
     /// The medium at a place, and the instance that places it: `None` if it is clear.
     #[inline]
     fn around(&self, media: Option<&'a Media>, stack: &MediumStack<'a>) -> Option<(&'a Medium, u32)> {
-        if let Some((interior, instance)) = stack.body {
-            return Some((interior.medium.as_ref()?, instance));
+        if let Some((stated, instance)) = stack.body {
+            return Some((stated.interior.as_ref()?, instance));
         }
-        match media.and_then(|media| media.filling_solid(stack)) {
-            Some((solid, instance)) => Some((solid.medium.as_ref()?, instance)),
+        if let Some((solid, instance)) = media.and_then(|media| media.filling_solid(stack)) {
+            return Some((solid.medium.as_ref()?, instance));
+        }
+        match stack.outside_of {
+            Some((stated, instance)) => Some((stated.exterior.as_ref()?.as_ref()?, instance)),
             None => Some((self.surrounding?, 0)),
         }
     }

@@ -8,7 +8,7 @@ use etalon_optics::colour::{colour_matching, rec709_luminance};
 use etalon_optics::spectrum::{Outside, RgbBasis, whole_nm};
 use etalon_optics::{ComplexIndex, RefractiveIndex, Spectrum, reference_nm};
 use etalon_scene::{
-    Filter, Image, ImageTexture, LightSampling, MaterialKind, Medium, Mesh, Metal, Object, ParameterMut,
+    Filter, Image, ImageTexture, LightSampling, Material, MaterialKind, Medium, Mesh, Metal, Object, ParameterMut,
     PolarisingSheet, Projection, Scene, Shape, SpectrumTexture, Texels,
 };
 use std::iter;
@@ -253,7 +253,7 @@ fn leave_out(effect: EffectName, scene: &mut Scene) {
 
 /// Every medium.
 fn media_mut(scene: &mut Scene) -> impl Iterator<Item = &mut Medium> {
-    scene.materials.iter_mut().filter_map(|material| material.medium.as_mut()).chain(&mut scene.medium)
+    scene.materials.iter_mut().flat_map(Material::media_mut).chain(&mut scene.medium)
 }
 
 /// Every object, where it is defined.

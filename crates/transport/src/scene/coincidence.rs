@@ -24,7 +24,7 @@ struct Pair {
 
 /// A message for each pair of objects whose interfaces coincide somewhere along a grid of lines through the picture.
 pub(crate) fn warnings(prepared: &Prepared) -> Vec<String> {
-    if !prepared.surfaces.interiors.iter().any(Option::is_some) {
+    if !prepared.surfaces.stated_media.iter().any(Option::is_some) {
         return Vec::new();
     }
     let camera = prepared.tracing_camera();
@@ -43,7 +43,7 @@ pub(crate) fn warnings(prepared: &Prepared) -> Vec<String> {
         let interfaces: Vec<(u32, SurfacePoint<f64>)> = points
             .filter_map(|point| {
                 let surface = prepared.surfaces.of(&point);
-                surface.interior().map(|_| (surface.object, point))
+                surface.stated_media().map(|_| (surface.object, point))
             })
             .collect();
         for neighbours in interfaces.windows(2) {

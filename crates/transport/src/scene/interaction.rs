@@ -12,7 +12,7 @@
 //! member after scattering leaves the whole group: it starts beyond all of them.
 
 use crate::film::Counters;
-use crate::media::{Interface, Media, MediumStack, PlacedInterior};
+use crate::media::{Interface, Media, MediumStack, PlacedMedia};
 use crate::scene::shading_tables::{BsdfKind, SmoothInterface};
 use crate::scene::world::{ShadowRays, World};
 use crate::surface::{Scattering, Surface};
@@ -84,9 +84,9 @@ impl<'a> SurfaceInteraction<'a> {
         (self.interface, self.crosses, self.is_open) = (None, false, false);
     }
 
-    /// What the body holds that it bounds, where that states both its sides itself or is filled.
-    pub(crate) fn interior(&self) -> Option<PlacedInterior<'a>> {
-        Some((self.surface.interior()?, self.point.surface.instance))
+    /// What lies on both its sides, where it states this itself or is filled.
+    pub(crate) fn stated_media(&self) -> Option<PlacedMedia<'a>> {
+        Some((self.surface.stated_media()?, self.point.surface.instance))
     }
 
     /// Whether the path met the side that the normal points into.
@@ -232,7 +232,7 @@ impl<'a> Walk<'a> {
     pub(crate) fn behind(&self, met: &SurfaceInteraction<'a>, stack: &MediumStack<'a>) -> MediumStack<'a> {
         match met.crosses {
             true => self.beyond,
-            false => stack.behind(met.interior(), met.meets_front()),
+            false => stack.behind(met.stated_media(), met.meets_front()),
         }
     }
 

@@ -8,7 +8,7 @@ use crate::frame::{Affine, SceneFrame, mapped};
 use crate::guiding::SpecularObjects;
 use crate::guiding::{GuidedTargets, RefractingBodies, SpecularConnections};
 use crate::light::{Environment, Light, LightTable, weighted_sum};
-use crate::media::{Interior, Media, Medium, Participating, Solid};
+use crate::media::{Media, Medium, Participating, Solid, StatedMedia};
 use crate::plan::{EffectName, LaneModel, OneLaneFilm, Plan, Study, simulated};
 use crate::scene::motion::motion;
 use crate::scene::prepare_error::PrepareError;
@@ -167,15 +167,7 @@ pub(crate) fn build(scene: &Scene, study: &Study, earlier: Option<Prepared>) -> 
         bsdfs,
         white: Bsdf::Lambert(Lambert::new(PathSpectrum::Constant(1.0).into())),
         properties: scene.materials.iter().map(|material| properties(&material.kind)).collect(),
-        interiors: scene
-            .materials
-            .iter()
-            .map(|material| {
-                let medium = || material.medium.as_ref().and_then(|medium| Medium::new(medium, range_nm, &frame));
-                let is_filled = material.medium.is_some() && material.kind.solid().is_none();
-                (is_filled || material.kind.media().is_some()).then(|| Interior { medium: medium() })
-            })
-            .collect(),
+        stated_media: scene.materials.iter().map(|material| StatedMedia::of(material, range_nm, &frame)).collect(),
         objects: shapes::objects(scene)
             .zip(coordinates)
             .map(|(o, coordinates)| ObjectSurface {

@@ -106,5 +106,5 @@ pub(crate) fn add_white(surfaces: &mut Surfaces, range_nm: [f64; 2]) {
     });
     surfaces.bsdfs.push(Bsdf::new(&white, range_nm));
     surfaces.properties.push(properties(&white));
-    surfaces.interiors.push(None);
+    surfaces.stated_media.push(None);
 }

@@ -1,7 +1,7 @@
 //! The media that hold the origin of a camera ray.
 
 use crate::film::Counters;
-use crate::media::{Media, MediumStack, PlacedInterior};
+use crate::media::{Media, MediumStack, PlacedMedia};
 use crate::scene::world::World;
 use etalon_geometry::{Passed, Ray};
 
@@ -40,14 +40,15 @@ impl<'a> World<'a> {
         stack
     }
 
-    /// The interior of the body that states both its sides and holds the origin of a ray: that of the first such surface along it,
-    /// whatever stands before that, if the ray comes to it from within.
-    fn entered_body(&self, ray: &Ray<f64>) -> Option<PlacedInterior<'a>> {
+    /// The body that states both its sides and holds the origin of a ray: that of the first such surface along it, whatever stands before
+    /// that, if the ray comes to it from within. What lies outside of a surface that is met from without is known where nothing stands
+    /// before it: [`MediumStack::meet`] finds that.
+    fn entered_body(&self, ray: &Ray<f64>) -> Option<PlacedMedia<'a>> {
         let mut passed = Passed::NOTHING;
         while let Some(hit) = self.geometry.next_hit(ray, &passed) {
             let point = self.geometry.surface(ray, &hit);
-            if let Some(interior) = self.surfaces.of(&point).interior() {
-                return (point.normal.dot(ray.direction) >= 0.0).then_some((interior, point.surface.instance));
+            if let Some(stated) = self.surfaces.of(&point).stated_media() {
+                return (point.normal.dot(ray.direction) >= 0.0).then_some((stated, point.surface.instance));
             }
             passed.pass(&hit, hit.t);
         }

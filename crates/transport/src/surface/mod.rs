@@ -5,7 +5,7 @@ pub(crate) mod quadric_uv;
 pub(crate) mod shading_geometry;
 
 use crate::bsdf::{Bsdf, BsdfSample, FluorescentPart, Lobe, Properties, Shading};
-use crate::media::{Interface, Interior, PlacedSolid};
+use crate::media::{Interface, PlacedSolid, StatedMedia};
 use crate::polarisation::mueller::Mueller;
 use crate::spectral::PathSpectrum;
 use crate::surface::shading_geometry::{At, Coordinates};
@@ -76,8 +76,8 @@ pub(crate) struct Surfaces {
     pub properties: Vec<Properties>,
     /// How light leaves that surfaces give back at another wavelength: as from a white Lambertian one.
     pub white: Bsdf,
-    /// What each material holds, where it states both its sides itself or is filled.
-    pub interiors: Vec<Option<Interior>>,
+    /// What lies on both sides of each material that states it itself or is filled.
+    pub stated_media: Vec<Option<StatedMedia>>,
     pub objects: Vec<ObjectSurface>,
     /// Object of each primitive, for each geometry by its label.
     pub object_of: Vec<Vec<u32>>,
@@ -164,9 +164,9 @@ impl<'a> Surface<'a> {
         self.own.emission.is_some()
     }
 
-    /// What it holds, where it states both its sides itself or is filled.
-    pub(crate) fn interior(&self) -> Option<&'a Interior> {
-        self.surfaces.interiors[self.own.material].as_ref()
+    /// What lies on both its sides, where it states this itself or is filled.
+    pub(crate) fn stated_media(&self) -> Option<&'a StatedMedia> {
+        self.surfaces.stated_media[self.own.material].as_ref()
     }
 
     /// Share of light that meets the surface at all; the rest passes.

@@ -76,6 +76,11 @@ pub(super) fn blend<'f>(
         _ => None,
     };
     let (first, second, by) = (first?, second?, by?);
+    if [&first, &second].iter().any(|part| part.exterior_medium.is_some()) {
+        let message = "what is inside a blend cannot have an \"exterior_medium\"";
+        reader.error_hint(Code::KeyConflict, blend.at.head(), message, "leave it out");
+        return None;
+    }
     if first.medium.is_some() || second.medium.is_some() {
         let message = "what is inside a blend cannot have an absorption or a medium";
         reader.error_hint(Code::KeyConflict, blend.at.head(), message, "put the blend into a \"filled\" material");

@@ -54,6 +54,8 @@ crate::record! {
         transmittance_depth_m: Optional<Positive>,
         /// Instead of an absorption: all that the interior does to light.
         medium: Optional<Box<MediumForm>>,
+        /// What fills the exterior, as where an open surface parts two media. If left out, what fills the space around does.
+        exterior_medium: Optional<Box<MediumForm>>,
     } with [
         Rule::NotBoth("alpha", "roughness_image"),
         Rule::NotBoth("alpha", "alpha_u"),
@@ -62,6 +64,7 @@ crate::record! {
         Rule::Needs("alpha_v", &["alpha_u"]),
         Rule::Needs("tangent_rotation_deg", &["alpha_u"]),
         Rule::NotBoth("exterior", "priority"),
+        Rule::NotBoth("exterior_medium", "priority"),
         Rule::NotBoth("roughness_image", "priority"),
         Rule::NotBoth("absorption_per_m", "transmittance"),
         Rule::NotBoth("absorption_per_m", "medium"),
@@ -82,7 +85,11 @@ pub(super) fn dielectric<'f>(
     let exterior = form.exterior.as_ref().and_then(|form| index(form, spectra.range_nm, reader));
     let roughness = roughness(&roughness_keys!(form), files, reader);
     let priority = form.priority.clone().checked()?.map(|priority| priority.0 as u32);
-    let medium = interior_medium(form, spectra, files, reader);
+    let filling = interior_medium(form, spectra, files, reader);
+    let around = match &form.exterior_medium {
+        Optional::Given(form) => medium(form, spectra, files, reader).map(Some),
+        _ => Some(None),
+    };
     let film = thin_film(&form.thin_film, spectra.range_nm, files, reader);
     let (interior, exterior, roughness, film) = (interior?, exterior?, roughness?, film?);
     if film.is_some() && roughness.is_rough() && (interior == exterior || priority.is_some()) {
@@ -106,7 +113,7 @@ pub(super) fn dielectric<'f>(
         }
     });
     let kind = tinted(kind, [&form.reflected_tint, &form.transmitted_tint], spectra, files, reader)?;
-    Some(Made { kind, medium: medium? })
+    Some(Made { kind, medium: filling?, exterior_medium: around? })
 }
 
 /// Whether light that meets several facets is counted. Of facets of two widths it cannot be, nor where a film reflects each wavelength and

@@ -122,7 +122,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Walker<'a, M
             counters.rays += 1;
             let mut met = world.intersect(ray, &mut walker.walk, &mut walker.stack, counters)?;
             if world.participating.is_some() {
-                walker.stack.meet(met.interior(), met.meets_front());
+                walker.stack.meet(met.stated_media(), met.meets_front());
                 if *asks_media {
                     let length = (met.point.position - start).length();
                     let way = Way { origin: start, direction: ray.direction, length, time: ray.time };

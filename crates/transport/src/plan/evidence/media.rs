@@ -7,7 +7,8 @@ use etalon_scene::{Medium, Object, PhaseFunction, Scene};
 
 /// What the first medium has to say that has something to say: that of a surface, then that outside of all bodies.
 fn first_medium(scene: &Scene, says: impl Fn(&Medium, [f64; 2]) -> Option<String>) -> Option<String> {
-    let of_surfaces = first_surface(scene, |material, range_nm| says(material.medium.as_ref()?, range_nm));
+    let of_surfaces =
+        first_surface(scene, |material, range_nm| material.media().find_map(|medium| says(medium, range_nm)));
     let surrounding = || {
         let said = says(scene.medium.as_ref()?, scene.integrator.wavelength_range_nm)?;
         Some(format!("medium of the scene: {said}"))
@@ -15,9 +16,9 @@ fn first_medium(scene: &Scene, says: impl Fn(&Medium, [f64; 2]) -> Option<String
     of_surfaces.or_else(surrounding)
 }
 
-/// Media that some object holds, and that outside of all.
+/// Media that some object states, and that outside of all.
 fn present(scene: &Scene) -> impl Iterator<Item = &Medium> {
-    let held = scene.placed_objects().filter_map(|object| scene.materials[object.material].medium.as_ref());
+    let held = scene.placed_objects().flat_map(|object| scene.materials[object.material].media());
     held.chain(&scene.medium)
 }
 
@@ -58,8 +59,8 @@ pub(super) fn coloured(scene: &Scene) -> Option<String> {
 /// The first medium that scatters light, to which shadow rays are of use.
 pub(super) fn scatters_everywhere(scene: &Scene) -> Option<String> {
     let scatters = |object: &Object| {
-        let medium = scene.materials[object.material].medium.as_ref()?;
-        medium.scatters().then(|| format!("the medium of \"{}\"", object.name))
+        let scatters = scene.materials[object.material].media().any(Medium::scatters);
+        scatters.then(|| format!("the medium of \"{}\"", object.name))
     };
     let surrounding =
         || scene.medium.as_ref().filter(|medium| medium.scatters()).map(|_| "the medium of the scene".to_owned());
@@ -88,9 +89,9 @@ pub(in crate::plan) fn parts_lanes(scene: &Scene) -> bool {
 
 /// The first medium that shines, and what it shows where it is too thick to see through.
 pub(super) fn sources(scene: &Scene) -> impl Iterator<Item = (String, &Spectrum)> {
-    let held = scene.placed_objects().filter_map(|object| {
-        let medium = scene.materials[object.material].medium.as_ref()?;
-        Some((format!("medium of \"{}\"", object.name), medium.shines()?))
+    let held = scene.placed_objects().flat_map(|object| {
+        let shining = scene.materials[object.material].media().filter_map(Medium::shines);
+        shining.map(|source| (format!("medium of \"{}\"", object.name), source))
     });
     let surrounding =
         scene.medium.as_ref().and_then(|medium| Some(("medium of the scene".to_owned(), medium.shines()?)));
