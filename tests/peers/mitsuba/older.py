@@ -3,6 +3,7 @@
 import re
 import xml.etree.ElementTree as ET
 
+INCLUDED = re.compile(r"""<include\s+filename=["']([^"']+)["']""")
 INTEGRATORS = ("path", "volpath", "volpathmis", "direct", "aov", "stokes", "moment", "depth")
 SAMPLERS = ("independent", "stratified", "multijitter", "orthogonal", "ldsampler")
 FILMS = ("hdrfilm", "specfilm")
@@ -28,7 +29,7 @@ def load(mi, scene, given, folder):
     for file in (copy,) if is_old else (scene, copy):
         try:
             if file is copy:
-                copy.write_text(edited(scene.read_text(errors="replace")))
+                copy.write_text(edited(scene.read_text(errors="replace"), holds_media(scene)))
             state = mi.parser.parse_file(config, str(file), **given)
             mi.parser.transform_all(config, state)
             loaded = mi.parser.instantiate(config, state)
@@ -40,7 +41,13 @@ def load(mi, scene, given, folder):
     raise refusal
 
 
-def edited(text):
+def holds_media(file, depth=8):
+    """Whether a file or one that it includes has a medium."""
+    text = file.read_text(errors="replace") if depth and file.exists() else ""
+    return "<medium" in text or any(holds_media(file.parent / name, depth - 1) for name in INCLUDED.findall(text))
+
+
+def edited(text, with_media):
     """The same picture, in words that Mitsuba 3 knows."""
     root = ET.fromstring(text)
     for parent in list(root.iter()):
@@ -52,7 +59,7 @@ def edited(text):
                 depth = next((of.get("value") for of in child if of.get("name") in ("maxDepth", "max_depth")), "-1")
                 child.clear()
                 # "path" goes through media as if they were not there.
-                child.set("type", "path" if root.find(".//medium") is None else "volpath")
+                child.set("type", "volpath" if with_media else "path")
                 ET.SubElement(child, "integer", name="max_depth", value=depth)
             elif child.tag == "sampler" and kind not in SAMPLERS:
                 child.set("type", "independent")
