@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::path::Path;
 
 use etalon_scene::LEAST_ALPHA;
-use etalon_scene::mesh::{ObjMaterial, read_obj};
+use etalon_scene::mesh::{Cut, ObjMaterial, read_obj};
 use serde_json::{Value, json};
 
 use crate::number::has_image;
@@ -16,7 +16,7 @@ pub(crate) fn import(bytes: &[u8], builder: &mut Builder<'_>) -> Result<(), Stri
         let name = path.to_string_lossy().replace('\\', "/");
         near(&name).map_err(|why| format!("the material library \"{name}\" cannot be read: {why}"))
     };
-    let file = read_obj(bytes, library).map_err(|error| error.to_string())?;
+    let file = read_obj(bytes, Cut::Outline, library).map_err(|error| error.to_string())?;
     for missing in &file.missing_libraries {
         builder.leave_out("mtllib", missing.clone());
     }

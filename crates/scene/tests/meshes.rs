@@ -1,7 +1,7 @@
 //! Mesh files: what is right arrives as it is written, what is wrong is refused with its place.
 
 use crate::common::{Parts, RIGHT};
-use etalon_scene::mesh::{Part, read_obj, read_ply, write_ply};
+use etalon_scene::mesh::{Cut, Part, read_obj, read_ply, write_ply};
 use etalon_scene::{Code, Loaded, Mesh, NamedFile, SceneErrors, Shape};
 use proptest::prelude::*;
 use std::path::Path;
@@ -169,7 +169,7 @@ fn an_obj_file_gives_a_part_for_each_group_and_material() {
         Some("paints.mtl") => Ok(b"newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\n".to_vec()),
         _ => Err("no such library".to_owned()),
     };
-    let obj = read_obj(OBJ.as_bytes(), library).unwrap();
+    let obj = read_obj(OBJ.as_bytes(), Cut::Outline, library).unwrap();
     let names: Vec<_> =
         obj.parts.iter().map(|p| (p.name.as_deref().unwrap(), p.material.as_deref().unwrap())).collect();
     assert_eq!(names, [("front left", "red"), ("front left", "blue"), ("back", "blue")]);
@@ -182,7 +182,7 @@ fn an_obj_file_gives_a_part_for_each_group_and_material() {
     assert_eq!(obj.materials.len(), 2);
     assert_eq!(obj.missing_libraries, Vec::<String>::new());
 
-    let lost = read_obj(OBJ.as_bytes(), |_| Err("gone".to_owned())).unwrap();
+    let lost = read_obj(OBJ.as_bytes(), Cut::Outline, |_| Err("gone".to_owned())).unwrap();
     assert_eq!(lost.missing_libraries, ["gone"]);
     assert_eq!(lost.parts.iter().map(|p| p.mesh.triangles.len()).sum::<usize>(), 4);
 }
@@ -201,7 +201,7 @@ fn what_is_wrong_with_an_obj_file_is_said_with_its_line() {
         ("v 0 0 0\nf 1 0 1\n", "line 2: a face names vertex 0, but the first has the number 1"),
         ("v 0 0 0\nv nan 0 0\nv 1 1 1\nf 1 2 3\n", "its faces: vertex 1 lies at [NaN, 0.0, 0.0]"),
     ] {
-        let error = read_obj(text.as_bytes(), |_| Ok(Vec::new())).expect_err(expected).to_string();
+        let error = read_obj(text.as_bytes(), Cut::Outline, |_| Ok(Vec::new())).expect_err(expected).to_string();
         assert!(error.starts_with(expected), "{error}\nis not\n{expected}");
     }
 }
@@ -342,7 +342,7 @@ proptest! {
         let mut text = OBJ.as_bytes().to_vec();
         let at = at % (text.len() - 4);
         text[at..at + 4].copy_from_slice(&with);
-        let _ = read_obj(&text, |_| Ok(noise.clone()));
-        let _ = read_obj(&noise, |_| Ok(text.clone()));
+        let _ = read_obj(&text, Cut::Fans, |_| Ok(noise.clone()));
+        let _ = read_obj(&noise, Cut::Outline, |_| Ok(text.clone()));
     }
 }

@@ -115,6 +115,7 @@ CASES = [
     of("normal"),
     *(of("mesh", format=f) for f in ("obj", "ply", "serialized")),
     of("flat-mesh"),
+    of("polygons"),
     of("bare-mesh"),
     *(of("mesh-colours", attribute=f"{of_what}_color") for of_what in ("vertex", "face")),
     of("instances"),

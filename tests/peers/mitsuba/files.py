@@ -129,6 +129,19 @@ def write_measured(path, phi_i):
     path.write_bytes(head + b"".join(field.tobytes() for field in fields.values()))
 
 
+def write_crown(folder):
+    """Polygons that are not flat, some of them concave: how they are cut into triangles is seen."""
+    lines = []
+    for k in range(6):
+        turn = np.radians(60 * k)
+        for x, y, z in ((-0.5, -0.9, 0.9), (0.5, -0.9, 0.9), (0.5, 0.9, 1.3), (0.0, 0.1, 0.7), (-0.5, 0.9, 1.3)):
+            lines.append(f"v {x * np.cos(turn) + z * np.sin(turn):.7f} {y} {z * np.cos(turn) - x * np.sin(turn):.7f}")
+    # From another corner each time.
+    for k in range(6):
+        lines.append("f " + " ".join(str(5 * k + 1 + (i + k) % 5) for i in range(5)))
+    (folder / "crown.obj").write_text("\n".join(lines) + "\n")
+
+
 def write_panes(folder):
     """A square of two triangles, with texture coordinates that are turned by 35°, and without."""
     points = [(-1, -1, 0), (1, -1, 0), (-1, 1, 0), (1, 1, 0)]
@@ -142,6 +155,7 @@ def write_panes(folder):
 
 def write_all(folder):
     write_panes(folder)
+    write_crown(folder)
     rng = np.random.default_rng(7)
     write_exr(folder / "picture.exr", {c: t for t in [rng.uniform(0.1, 0.9, (5, 7))] for c in "RGB"})
     write_exr(folder / "sky.exr", {c: t for t in [rng.uniform(0.1, 1, (6, 12)) ** 2] for c in "RGB"})

@@ -3,7 +3,7 @@
 use std::rc::Rc;
 
 use etalon_scene::Mesh as SceneMesh;
-use etalon_scene::mesh::{Part, read_obj, read_ply, smooth_normals};
+use etalon_scene::mesh::{Cut, Part, read_obj, read_ply, smooth_normals};
 use glam::DAffine3;
 use serde_json::{Value, json};
 
@@ -284,7 +284,9 @@ impl<'a> Walk<'a, '_, '_> {
         let refused = |why: &dyn std::fmt::Display| format!("{place}: \"{file}\": {why}");
         let (parts, of_faces) = match format {
             // Materials of MTL are not asked for: the scene has its own.
-            MeshFormat::Obj => (read_obj(&bytes, |_| Ok(Vec::new())).map_err(|error| refused(&error))?.parts, false),
+            MeshFormat::Obj => {
+                (read_obj(&bytes, Cut::Fans, |_| Ok(Vec::new())).map_err(|error| refused(&error))?.parts, false)
+            }
             MeshFormat::Ply => (vec![read_ply(&bytes).map_err(|error| refused(&error))?], false),
             MeshFormat::Serialized(index) => {
                 let (part, of_faces) = serialized::read(&bytes, index).map_err(|why| refused(&why))?;

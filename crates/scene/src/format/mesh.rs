@@ -48,7 +48,7 @@ fn from_file(
     let read = match extension.as_str() {
         "ply" => mesh::read_ply(&bytes).map(|part| vec![part]),
         // Materials are the scene's own business here.
-        _ => mesh::read_obj(&bytes, |_| Ok(Vec::new())).map(|obj| obj.parts),
+        _ => mesh::read_obj(&bytes, mesh::Cut::Outline, |_| Ok(Vec::new())).map(|obj| obj.parts),
     };
     drop(bytes);
     let refuse = |message: String, reader: &mut Reader<'_>| {

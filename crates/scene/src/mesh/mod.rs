@@ -14,6 +14,7 @@ mod write;
 pub use area::has_area;
 pub use obj::{ObjMaterial, read_obj};
 pub use ply::read_ply;
+pub use polygon::Cut;
 pub use smooth::smooth_normals;
 pub use write::write_ply;
 

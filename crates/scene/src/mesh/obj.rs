@@ -6,7 +6,7 @@ use std::path::Path;
 
 use tobj::LoadOptions;
 
-use super::polygon::triangulate;
+use super::polygon::Cut;
 use super::{MeshError, Part, check_vertex};
 use crate::model::Mesh;
 
@@ -24,11 +24,15 @@ pub struct ObjFile {
     pub missing_libraries: Vec<String>,
 }
 
-/// Reads an OBJ file. `library` gives the bytes of a material library by the name that the file has for it.
+/// Reads an OBJ file, its polygons cut in this way. `library` gives the bytes of a material library by the name that the file has for it.
 ///
 /// # Errors
 /// If a line cannot be read, a face names something that the file does not have, or a coordinate is not finite.
-pub fn read_obj(bytes: &[u8], library: impl Fn(&Path) -> Result<Vec<u8>, String>) -> Result<ObjFile, MeshError> {
+pub fn read_obj(
+    bytes: &[u8],
+    cut: Cut,
+    library: impl Fn(&Path) -> Result<Vec<u8>, String>,
+) -> Result<ObjFile, MeshError> {
     check_faces(bytes)?;
     let line = Cell::new(0);
     let missing = RefCell::new(Vec::new());
@@ -67,14 +71,14 @@ pub fn read_obj(bytes: &[u8], library: impl Fn(&Path) -> Result<Vec<u8>, String>
     let mut parts = Vec::with_capacity(models.len());
     for model in models {
         let material = model.mesh.material_id.and_then(|id| materials.get(id)).map(|m| m.name.clone());
-        if let Some(part) = part(model, material)? {
+        if let Some(part) = part(model, material, cut)? {
             parts.push(part);
         }
     }
     Ok(ObjFile { parts, materials, missing_libraries: missing.into_inner() })
 }
 
-fn part(model: tobj::Model, material: Option<String>) -> Result<Option<Part>, MeshError> {
+fn part(model: tobj::Model, material: Option<String>, cut: Cut) -> Result<Option<Part>, MeshError> {
     let name = Some(model.name).filter(|name| !name.is_empty() && name != "unnamed_object");
     let tobj::Mesh { positions, normals, texcoords, indices, face_arities, .. } = model.mesh;
     let whole = |list: &[f32], each: usize| list.chunks_exact(each).len();
@@ -112,7 +116,7 @@ fn part(model: tobj::Model, material: Option<String>) -> Result<Option<Part>, Me
     };
     for arity in arities {
         let corners = &indices[start..start + arity];
-        triangulate(corners, |v| mesh.vertices[v as usize], &mut mesh.triangles);
+        cut.triangulate(corners, |v| mesh.vertices[v as usize], &mut mesh.triangles);
         start += arity;
     }
     Ok((!mesh.triangles.is_empty()).then(|| Part { name, material, mesh, ..Part::default() }))

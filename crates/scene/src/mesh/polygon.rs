@@ -5,6 +5,37 @@ use glam::DVec3;
 /// Polygons with more corners than this are cut as fans: clipping ears takes time in the cube of the corners.
 const MOST_EARS: usize = 256;
 
+/// How polygons are cut into triangles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Cut {
+    /// So that flat ones keep their outline, concave ones too.
+    Outline,
+    /// As fans from the first corner, as Mitsuba does. Concave ones may overlap themselves.
+    Fans,
+}
+
+impl Cut {
+    /// Cuts the polygon whose corners are the vertices `corners` into triangles with the same orientation.
+    pub(super) fn triangulate(
+        self,
+        corners: &[u32],
+        position: impl Fn(u32) -> [f64; 3],
+        triangles: &mut Vec<[u32; 3]>,
+    ) {
+        match self {
+            Self::Outline => triangulate(corners, position, triangles),
+            Self::Fans => fan(corners, triangles),
+        }
+    }
+}
+
+/// Cuts a polygon as a fan.
+fn fan(corners: &[u32], triangles: &mut Vec<[u32; 3]>) {
+    if let [first, rest @ ..] = corners {
+        triangles.extend(rest.windows(2).map(|edge| [*first, edge[0], edge[1]]));
+    }
+}
+
 /// Cuts the polygon whose corners are the vertices `corners` into triangles with the same orientation.
 ///
 /// A quadrilateral is cut along a diagonal on whose two sides the normals agree; a polygon of more corners by clipping
@@ -27,7 +58,7 @@ pub(super) fn triangulate(corners: &[u32], position: impl Fn(u32) -> [f64; 3], t
             let before = triangles.len();
             if corners.len() > MOST_EARS || !clip_ears(corners, &position, triangles) {
                 triangles.truncate(before);
-                triangles.extend((1..corners.len() - 1).map(|i| [corners[0], corners[i], corners[i + 1]]));
+                fan(corners, triangles);
             }
         }
     }
@@ -79,6 +110,15 @@ mod tests {
             0.5 * (b - a).cross(c - a).length()
         };
         (triangles.iter().map(one).sum(), triangles.len())
+    }
+
+    #[test]
+    fn fans_begin_at_the_first_corner() {
+        let mut triangles = Vec::new();
+        for corners in [&[][..], &[1], &[1, 2], &[4, 5, 6], &[7, 8, 9, 6, 5]] {
+            Cut::Fans.triangulate(corners, |_| [0.0; 3], &mut triangles);
+        }
+        assert_eq!(triangles, [[4, 5, 6], [7, 8, 9], [7, 9, 6], [7, 6, 5]]);
     }
 
     #[test]
