@@ -40,8 +40,8 @@ struct ExplainJson<'a> {
     lights: usize,
     /// Whether they are chosen for each point anew, by where they are; else by power alone.
     lights_by_place: bool,
-    /// Share of the shadow rays that a trial gave each of them; with `lights_by_place` each without a place, then all others. Left out where power
-    /// decides.
+    /// Share of the shadow rays that a trial gave each of them, in the order of the scene; with `lights_by_place` each without a place, then all
+    /// others together. Left out if no trial changed it.
     #[serde(skip_serializing_if = "Option::is_none")]
     light_shares: Option<Vec<f64>>,
     /// Share of the directions of diffuse surfaces that is drawn toward mirrors and bodies of glass, and how many these are; 0 where

@@ -19,7 +19,7 @@ use crate::failure::{Failure, Outcome};
 ///
 /// For each scene it prints the measured value, its standard error, and the smallest bias that the test would have found. For all of them it says
 /// how many would have shown a bias of 5, 1, 0.2 and 0.02 %, and how many known mistakes would have been seen. A run of all scenes takes
-/// about three minutes of two cores: each then excludes its known mistakes. One that is named sees more, mostly 1 %. The exit status is 1 if a
+/// about three minutes of two cores: each then excludes its known mistakes. One that is named goes on to see more. The exit status is 1 if a
 /// scene fails.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:

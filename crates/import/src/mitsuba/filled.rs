@@ -123,7 +123,7 @@ impl<'a> Walk<'a, '_, '_> {
         let medium = self.medium(medium)?;
         if !fills_bodies && self.builder.medium.is_none() {
             let what = match states_it {
-                true => "here what the camera sees through nothing else lies in that medium, too",
+                true => "here the space between the camera and it is in that medium, too, if nothing stands between",
                 false => "here it fills all space outside, that of the camera, too",
             };
             self.builder.approximate(place, format!("a medium is outside of it, but the sensor is in none: {what}"));

@@ -3,6 +3,8 @@
 //! A light that is chosen with a probability p brings v/p, where v is what it brings if it is always chosen. So the mean square of what all lights
 //! bring is Σ E[v²]/p. It is least where p is in proportion to √E[v²]. That is measured with shadow rays alone: what MIS leaves to the walk is the
 //! light's, too. Whether these probabilities are better than those by power is then tried with MIS.
+//!
+//! Of a sky only what is brighter than its mean counts, since shadow rays are drawn by that. Paths find the rest by themselves, whatever is learned.
 
 use crate::film::Counters;
 use crate::integrator::observer::{Found, Observer};
@@ -58,7 +60,7 @@ pub(crate) fn try_light_choice<M: WavelengthModel<N>, P: Polarisation<N>, const 
     tracer.seed = seed;
     tracer.world.light_sampling = sampling.unwrap_or(tracer.world.light_sampling);
     let lights = &prepared.lights;
-    let groups = lights.shares(None).len();
+    let groups = lights.group_count();
     let samples = samples.max(FEWEST_PATHS / tried.count());
     let of_pixels = tried.map(|x, y| {
         let (mut mean, mut square, mut squares) = (0.0, 0.0, vec![0.0; groups]);
@@ -88,13 +90,13 @@ pub(crate) fn try_light_choice<M: WavelengthModel<N>, P: Polarisation<N>, const 
 impl LightChoiceTrial {
     /// The shares of the groups that leave the least of both variances, if that promises something.
     pub(crate) fn shares(&self, lights: &LightTable) -> Option<Vec<f64>> {
-        let tried = lights.shares(None);
+        let tried = lights.shares();
         let part = |square: &[f64; 2]| (0..2).map(|kind| 0.5 * square[kind] / self.variances[kind]).sum::<f64>();
         let parts: Vec<f64> = self.squares.iter().map(part).collect();
         let worth: Vec<f64> = parts.iter().zip(&tried).map(|(part, share)| (part * share).sqrt()).collect();
         let total: f64 = worth.iter().sum();
         let learned: Vec<f64> = worth.iter().map(|worth| worth / total).collect();
-        let then = lights.shares(Some(&learned));
+        let then = lights.shares_if(&learned);
         let change = |((part, tried), then): ((&f64, &f64), &f64)| part * (tried / then - 1.0);
         let left = 1.0 + parts.iter().zip(&tried).zip(&then).map(change).sum::<f64>();
         (left < PROMISING).then_some(learned)

@@ -107,8 +107,12 @@ impl Near {
             })
             .collect();
         let tree = LightTree::new(&bounds)?;
-        let power_within: f64 = within.iter().map(|&index| powers[index as usize]).sum();
-        let groups: Vec<f64> = beyond.iter().map(|&index| powers[index as usize]).chain([power_within]).collect();
+        let power_of = |of: &[u32]| of.iter().map(|&index| powers[index as usize]).sum::<f64>();
+        let (power_beyond, power_within) = (power_of(&beyond), power_of(&within));
+        // A share of what goes beyond the tree is spread evenly there, too.
+        let each = EVEN_SHARE * power_beyond / beyond.len() as f64;
+        let of_beyond = beyond.iter().map(|&index| (1.0 - EVEN_SHARE) * powers[index as usize] + each);
+        let groups: Vec<f64> = of_beyond.chain([power_within]).collect();
         Some(Self { tree, within, beyond, by_power: Table::new(groups.into_iter(), 0.0), number })
     }
 
@@ -258,37 +262,45 @@ impl LightTable {
         self.near.as_ref().map_or(light, |near| near.group(light))
     }
 
-    /// How often each group is chosen: as it is, and as it would be with these shares.
-    pub(crate) fn shares(&self, learned: Option<&[f64]>) -> Vec<f64> {
-        let count = self.groups().0.len();
-        let of_group = |group: usize| match (&self.near, learned) {
-            (None, None) => self.groups().probability(group),
-            (_, Some(learned)) => mix(self.power_of_group(group), learned[group]),
-            (Some(_), None) => mix(self.power_of_group(group), self.groups().probability(group)),
-        };
-        (0..count).map(of_group).collect()
+    /// How many groups there are.
+    pub(crate) fn group_count(&self) -> usize {
+        self.groups().0.len()
     }
 
-    /// The probability of a group by the power of its lights.
-    fn power_of_group(&self, group: usize) -> f64 {
-        let by_power = |light: usize| self.by_power.probability(light);
+    /// How often each group is chosen.
+    pub(crate) fn shares(&self) -> Vec<f64> {
+        (0..self.group_count()).map(|group| self.share(group, self.groups().probability(group))).collect()
+    }
+
+    /// How often each would be chosen if [`learn`](Self::learn) were given these shares.
+    pub(crate) fn shares_if(&self, learned: &[f64]) -> Vec<f64> {
+        learned.iter().enumerate().map(|(group, &learned)| self.share(group, self.mixed(group, learned))).collect()
+    }
+
+    /// How often a group is chosen that has this share of what is not left to the table of all lights.
+    fn share(&self, group: usize, otherwise: f64) -> f64 {
         match &self.near {
-            None => by_power(group),
-            Some(near) => match near.beyond.get(group) {
-                Some(&light) => by_power(light as usize),
-                None => near.within.iter().map(|&light| by_power(light as usize)).sum(),
-            },
+            None => otherwise,
+            Some(near) => {
+                let by_power = |&light: &u32| self.by_power.probability(light as usize);
+                let of_table = near.beyond.get(group).map_or_else(|| near.within.iter().map(by_power).sum(), by_power);
+                mix(of_table, otherwise)
+            }
         }
     }
 
-    /// Chooses groups as often as these shares say, whose sum is 1, but for what is left to power; or by power alone.
+    /// A share that was learned, with its part by power.
+    fn mixed(&self, group: usize, learned: f64) -> f64 {
+        mix(self.near.as_ref().map_or(&self.by_power, |near| &near.by_power).probability(group), learned)
+    }
+
+    /// Chooses groups as often as these shares say, whose sum is 1, but for a tenth that stays by power; or by power alone.
     pub(crate) fn learn(&mut self, shares: Option<&[f64]>) {
-        self.learned = shares.map(|learned| {
-            let mixed = self.shares(shares);
-            // A tree leaves its part to the table anyway.
-            let weights = if self.near.is_some() { learned } else { &mixed };
-            Table::new(weights.iter().copied(), 0.0)
-        });
+        let table = |shares: &[f64]| {
+            let mixed: Vec<f64> = shares.iter().enumerate().map(|(group, &share)| self.mixed(group, share)).collect();
+            Table::new(mixed.into_iter(), 0.0)
+        };
+        self.learned = shares.map(table);
     }
 
     /// Whether a trial has learned how often lights are chosen.

@@ -13,8 +13,8 @@
 //! **A dielectric that states both its sides** says it itself: a path that meets it from within has come through its interior, and one
 //! that goes through it goes on in there, or leaves it. What such a body holds is surrounded by its interior as long as it is not itself
 //! such a body. The same holds of a body of another material that is filled with a medium.
-//! Such a dielectric may state a medium on its other side, too. A path that meets it from there has come through that medium, and one that
-//! leaves its interior goes on in it, until it leaves the interior of another. Solids with priorities stand in it as in what surrounds the
+//! Such a dielectric may state a medium on its other side, too. A path that meets it from there has come through that medium. A path that
+//! leaves its interior is in that medium, until it leaves another interior. Solids with priorities stand in it as in what surrounds the
 //! scene: where one holds a place, such a dielectric there says nothing new.
 
 mod albedo;
@@ -81,7 +81,7 @@ impl<'a> MediumStack<'a> {
         let Some(stated) = stated else { return };
         if !from_front {
             self.body = Some(stated);
-        } else if stated.0.exterior.is_some() {
+        } else if stated.0.exterior.is_some() && self.len == 0 {
             self.body = None;
             self.go_outside_of(stated);
         }

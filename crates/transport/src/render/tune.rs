@@ -13,6 +13,9 @@ use crate::scene::prepare_error::PrepareError;
 use crate::wavelength::guide::Regions;
 use etalon_scene::{LightSampling, LightSelection, LightTracing, Scene};
 
+/// Most groups of lights whose shares are learned: of more the trial would know too little.
+const MOST_LIGHT_GROUPS: usize = 64;
+
 /// What must be left of the variance. Much, since the trial knows of no strata: where the picture's samples would be spread evenly over
 /// directions, a share taken from them costs more than it foretells; and paths through guided targets are longer.
 const MAX_COST_RATIO: f64 = 0.4;
@@ -69,46 +72,55 @@ pub fn prepare_frame(scene: &Scene, study: &Study, earlier: Option<Prepared>) ->
 }
 
 impl Prepared {
-    /// Decides by trials, with random numbers of a seed: whether shadow rays go through glass, what directions are guided by, and from how many
+    /// Decides by trials, with random numbers of a seed: how often each light is chosen, whether shadow rays go through glass, what directions are guided by, and from how many
     /// vertices specular connections are made. Then whether light is followed from the lamps, and which wavelengths are drawn where.
     pub fn tune(&mut self, seed: u64) {
         // An earlier frame may have found otherwise, and each trial depends on what those before it have found.
         self.wavelength_guide = None;
         self.specular_objects = None;
+        self.shadow_rays_stop_at_glass = false;
+        self.forget_directions();
         self.tune_light_choice(seed);
         self.tune_camera_paths(seed);
         self.tune_light_tracing(seed);
         self.tune_wavelengths(seed);
     }
 
-    /// Learns how often each light is worth a shadow ray, where the scene leaves that open.
+    /// Learns how often each light is worth a shadow ray, where the scene leaves that open and lights are not too many to be told apart.
     fn tune_light_choice(&mut self, seed: u64) {
         self.lights.learn(None);
         let integrator = &self.scene.integrator;
         let open =
             integrator.light_selection == LightSelection::Auto && integrator.light_sampling != LightSampling::Bsdf;
-        if !open || self.lights.lights().len() < 2 {
+        if !open || !(2..=MOST_LIGHT_GROUPS).contains(&self.lights.group_count()) {
             return;
         }
-        let try_it = |prepared: &Self, sampling, samples| {
+        let try_it = |prepared: &Self, seed, sampling, samples| {
             (prepared.kernel().try_light_choice)(prepared, seed, sampling, samples)
         };
-        let by_shadow_rays = |samples| try_it(self, Some(LightSampling::Light), samples).shares(&self.lights);
+        let by_shadow_rays = |samples| try_it(self, seed, Some(LightSampling::Light), samples).shares(&self.lights);
         // Few paths say whether more are worth their time.
         let Some(shares) = by_shadow_rays(1).and_then(|_| by_shadow_rays(SAMPLES)) else { return };
-        let by_power = try_it(self, None, SAMPLES);
+        // Other random numbers than those that they were learned from.
+        let other_seed = mix(seed);
+        let by_power = try_it(self, other_seed, None, SAMPLES);
         self.lights.learn(Some(&shares));
-        if !try_it(self, None, SAMPLES).is_better_than(&by_power) {
+        if !try_it(self, other_seed, None, SAMPLES).is_better_than(&by_power) {
             self.lights.learn(None);
         }
     }
 
     fn tune_camera_paths(&mut self, seed: u64) {
-        (self.guided_targets.guided_by, self.guided_targets.share) = (GuidedBy::Nothing, 0.0);
-        self.set_connection_shares(USUAL_SHARES);
+        self.forget_directions();
         self.tune_refracted_shadows(seed);
         self.tune_guided_targets(seed);
         self.tune_connections(seed);
+    }
+
+    /// Nothing is guided, and specular connections are made as usual.
+    fn forget_directions(&mut self) {
+        (self.guided_targets.guided_by, self.guided_targets.share) = (GuidedBy::Nothing, 0.0);
+        self.set_connection_shares(USUAL_SHARES);
     }
 
     /// Follows light from the lamps where that leaves less noise for the time than the best that camera paths do alone. What these are

@@ -322,10 +322,10 @@ impl Prepared {
         (self.lights.lights().len(), self.lights.chooses_by_place())
     }
 
-    /// The share of the shadow rays that a trial gave each light, or each light beyond the tree and then all of the tree. `None` where power alone
-    /// decides.
+    /// The share of the shadow rays that a trial gave each light, or each light beyond the tree and then all of the tree: in the order of the scene,
+    /// without lights that emit nothing, and for each triangle of a mesh that shines. `None` if no trial changed it.
     pub fn learned_light_shares(&self) -> Option<Vec<f64>> {
-        self.lights.has_learned().then(|| self.lights.shares(None))
+        self.lights.has_learned().then(|| self.lights.shares())
     }
 
     /// Of a camera with a compound lens: sin θ₀ of the cone of light that reaches the middle of the film, traced at the line d. Its pixels
