@@ -18,7 +18,7 @@ use etalon_optics::Lanes;
 use etalon_scene::LightSampling;
 
 /// Fewest paths of a trial: of a picture of few pixels each has more samples.
-const FEWEST_PATHS: u32 = 1024;
+const FEWEST_PATHS: u32 = 256;
 /// What must seem to be left of the variances, in their mean, for a further trial; and of either in the end.
 const PROMISING: f64 = 0.9;
 const WORTH_IT: f64 = 0.95;
@@ -47,15 +47,15 @@ impl<const N: usize> Observer<N> for ByGroup<'_> {
     }
 }
 
-/// A trial by one kernel, in some pixels of the picture, evenly spread, with random numbers of a seed; with this instead of MIS, if any, and so many
-/// samples of each pixel.
+/// A trial by one kernel, in some pixels of the picture, evenly spread, with random numbers of a seed; with this instead of MIS, if any. Takes
+/// how many pixels there are at most, and the samples of each.
 pub(crate) fn try_light_choice<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
     prepared: &Prepared,
     seed: u64,
     sampling: Option<LightSampling>,
-    samples: u32,
+    (pixels, samples): (u64, u32),
 ) -> LightChoiceTrial {
-    let tried = Tried::of(prepared);
+    let tried = Tried::at_most(pixels, prepared);
     let mut tracer = Tracer::new(prepared);
     tracer.seed = seed;
     tracer.world.light_sampling = sampling.unwrap_or(tracer.world.light_sampling);

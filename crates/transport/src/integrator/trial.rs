@@ -14,7 +14,7 @@ use rayon::prelude::*;
 pub(crate) const TRIED: f64 = 0.35;
 pub(crate) const SHARES: [f64; 5] = [0.1, 0.2, 0.35, 0.5, 0.6];
 /// Pixels that are tried, and samples of each.
-const PIXELS: u64 = 1024;
+pub(crate) const PIXELS: u64 = 1024;
 pub(crate) const SAMPLES: u32 = 16;
 /// Paths that the trial draws more than five times as often as the cosine would do not count. Without guided targets they bear much of the
 /// variance, but are so rare that hardly any picture has them: with them, the trial promises much where nothing is won (two balls in
@@ -33,10 +33,15 @@ pub(crate) struct Tried {
 
 impl Tried {
     pub(crate) fn of(prepared: &Prepared) -> Self {
+        Self::at_most(PIXELS, prepared)
+    }
+
+    /// No more than so many of them, about.
+    pub(crate) fn at_most(most: u64, prepared: &Prepared) -> Self {
         let film = &prepared.scene.film;
         let pixels = u64::from(film.width) * u64::from(film.height);
         // Of a small picture a quarter, lest the trial cost more than it.
-        let tried = PIXELS.min(pixels.div_ceil(4));
+        let tried = most.min(pixels.div_ceil(4));
         let step = (pixels as f64 / tried as f64).sqrt().ceil() as u32;
         let along = |end: u32| ((step / 2).min(end - 1)..end).step_by(step as usize).collect();
         Self { columns: along(film.width), rows: along(film.height), step }

@@ -48,9 +48,9 @@ pub(crate) struct Kernel {
     pub render_reused: Option<RenderPixels>,
     /// Traces a sample once more and tells what happened. Takes the column and row of its pixel, and its number.
     pub replay: fn(&Prepared, u32, u32, u32) -> Replay,
-    /// Tells how often each light is worth a shadow ray. Takes the seed of its random numbers, how light is sampled if not as the scene says, and the
-    /// samples of each pixel.
-    pub try_light_choice: fn(&Prepared, u64, Option<LightSampling>, u32) -> LightChoiceTrial,
+    /// Tells how often each light is worth a shadow ray. Takes the seed of its random numbers, how light is sampled if not as the scene says, how
+    /// many pixels, and the samples of each.
+    pub try_light_choice: fn(&Prepared, u64, Option<LightSampling>, (u64, u32)) -> LightChoiceTrial,
     /// Tells what guided targets of caustics would win, by a trial with random numbers of a seed.
     pub try_guided_targets: fn(&Prepared, u64) -> Trial,
     /// Tells what specular connections bring and take, by a trial with random numbers of a seed.

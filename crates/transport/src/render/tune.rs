@@ -4,7 +4,7 @@ use crate::guiding::SpecularObjects;
 use crate::guiding::{GuidedBy, USUAL_SHARES};
 use crate::integrator::light_tracing::find_specular_objects;
 use crate::integrator::light_tracing::trial::light_paths_per_pixel;
-use crate::integrator::trial::{SAMPLES, SHARES, TRIED};
+use crate::integrator::trial::{PIXELS, SAMPLES, SHARES, TRIED};
 use crate::plan::{EffectName, LaneModel, Study};
 use crate::sampler::mix;
 use crate::scene::coincidence;
@@ -13,6 +13,12 @@ use crate::scene::prepare_error::PrepareError;
 use crate::wavelength::guide::Regions;
 use etalon_scene::{LightSampling, LightSelection, LightTracing, Scene};
 
+/// Pixels and samples of the trials of lights, and pixels of the first, which has one sample of each and says whether the others are worth their time.
+const ALL: (u64, u32) = (PIXELS, SAMPLES);
+const FEW_PIXELS: u64 = 256;
+/// Most objects of a scene in which lights are tried. A ray may meet all of them at one point, and must then remember each: with 100,000 a trial
+/// would take minutes, and hundreds of megabytes.
+const MOST_OBJECTS: usize = 10_000;
 /// Most groups of lights whose shares are learned: of more the trial would know too little.
 const MOST_LIGHT_GROUPS: usize = 64;
 
@@ -92,20 +98,21 @@ impl Prepared {
         let integrator = &self.scene.integrator;
         let open =
             integrator.light_selection == LightSelection::Auto && integrator.light_sampling != LightSampling::Bsdf;
-        if !open || !(2..=MOST_LIGHT_GROUPS).contains(&self.lights.group_count()) {
+        let affordable = self.surfaces.objects.len() <= MOST_OBJECTS;
+        if !open || !affordable || !(2..=MOST_LIGHT_GROUPS).contains(&self.lights.group_count()) {
             return;
         }
-        let try_it = |prepared: &Self, seed, sampling, samples| {
-            (prepared.kernel().try_light_choice)(prepared, seed, sampling, samples)
+        let try_it = |prepared: &Self, seed, sampling, effort| {
+            (prepared.kernel().try_light_choice)(prepared, seed, sampling, effort)
         };
-        let by_shadow_rays = |samples| try_it(self, seed, Some(LightSampling::Light), samples).shares(&self.lights);
+        let by_shadow_rays = |effort| try_it(self, seed, Some(LightSampling::Light), effort).shares(&self.lights);
         // Few paths say whether more are worth their time.
-        let Some(shares) = by_shadow_rays(1).and_then(|_| by_shadow_rays(SAMPLES)) else { return };
+        let Some(shares) = by_shadow_rays((FEW_PIXELS, 1)).and_then(|_| by_shadow_rays(ALL)) else { return };
         // Other random numbers than those that they were learned from.
         let other_seed = mix(seed);
-        let by_power = try_it(self, other_seed, None, SAMPLES);
+        let by_power = try_it(self, other_seed, None, ALL);
         self.lights.learn(Some(&shares));
-        if !try_it(self, other_seed, None, SAMPLES).is_better_than(&by_power) {
+        if !try_it(self, other_seed, None, ALL).is_better_than(&by_power) {
             self.lights.learn(None);
         }
     }
