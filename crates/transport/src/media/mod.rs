@@ -167,14 +167,15 @@ pub(crate) struct StatedMedia {
 }
 
 impl StatedMedia {
-    /// Those of a material; `None` if the place decides them.
-    pub(crate) fn of(material: &Material, range_nm: [f64; 2], frame: &SceneFrame) -> Option<Self> {
+    /// Those of a material; `None` if the place decides them. Few of many materials state media.
+    pub(crate) fn of(material: &Material, range_nm: [f64; 2], frame: &SceneFrame) -> Option<Box<Self>> {
         let is_filled = material.medium.is_some() && material.kind.solid().is_none();
         let medium = |medium| Medium::new(medium, range_nm, frame);
-        (is_filled || material.kind.media().is_some()).then(|| Self {
+        let stated = || Self {
             interior: material.medium.as_ref().and_then(medium),
             exterior: material.exterior_medium.as_ref().map(medium),
-        })
+        };
+        (is_filled || material.kind.media().is_some()).then(|| Box::new(stated()))
     }
 }
 

@@ -77,7 +77,7 @@ pub(crate) struct Surfaces {
     /// How light leaves that surfaces give back at another wavelength: as from a white Lambertian one.
     pub white: Bsdf,
     /// What lies on both sides of each material that states it itself or is filled.
-    pub stated_media: Vec<Option<StatedMedia>>,
+    pub stated_media: Vec<Option<Box<StatedMedia>>>,
     pub objects: Vec<ObjectSurface>,
     /// Object of each primitive, for each geometry by its label.
     pub object_of: Vec<Vec<u32>>,
@@ -166,7 +166,7 @@ impl<'a> Surface<'a> {
 
     /// What lies on both its sides, where it states this itself or is filled.
     pub(crate) fn stated_media(&self) -> Option<&'a StatedMedia> {
-        self.surfaces.stated_media[self.own.material].as_ref()
+        self.surfaces.stated_media[self.own.material].as_deref()
     }
 
     /// Share of light that meets the surface at all; the rest passes.
