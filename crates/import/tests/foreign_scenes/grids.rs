@@ -15,7 +15,7 @@ fn read(medium: &str) -> (Medium, Imported) {
     let imported = imported("pbrt", &file(medium));
     let scene = scene(&imported);
     let medium = scene.materials[scene.objects[0].material].medium.clone();
-    (medium.unwrap_or_else(|| panic!("{:?}", said(&imported))), imported)
+    (*medium.unwrap_or_else(|| panic!("{:?}", said(&imported))), imported)
 }
 
 fn near(found: f64, known: f64) {

@@ -12,7 +12,7 @@ fn filled(surface: Value, extensions: Value) -> (MaterialKind, Option<Medium>, V
     let said = imported.left_out.iter().filter(|l| l.place.contains("KHR_materials_volume"));
     let said = said.map(|l| format!("{}: {}", l.place, l.what)).collect();
     let material = scene(&imported).materials.into_iter().find(|material| material.name == "body").unwrap();
-    (material.kind, material.medium, said)
+    (material.kind, material.medium.map(|medium| *medium), said)
 }
 
 fn near(found: f64, known: f64) {

@@ -316,9 +316,9 @@ pub(crate) struct Made {
     /// What the surface does.
     pub(crate) kind: MaterialKind,
     /// What fills its interior.
-    pub(crate) medium: Option<Medium>,
+    pub(crate) medium: Option<Box<Medium>>,
     /// What fills the other side, where the form says so.
-    pub(crate) exterior_medium: Option<Medium>,
+    pub(crate) exterior_medium: Option<Box<Medium>>,
 }
 
 impl Made {
@@ -399,7 +399,7 @@ pub(crate) fn material<'f>(
         MaterialForm::Boundary(boundary) => {
             let medium = medium(boundary.medium.as_ref()?, spectra, files, reader)?;
             let priority = boundary.priority.clone().checked()?.map(|priority| priority.0 as u32);
-            return Some(Made { medium: Some(medium), ..MaterialKind::Boundary { priority }.into() });
+            return Some(Made { medium: Some(Box::new(medium)), ..MaterialKind::Boundary { priority }.into() });
         }
         MaterialForm::Black(_) => Some(MaterialKind::Black),
     };

@@ -18,20 +18,20 @@ pub struct Material {
     /// What it is.
     pub kind: MaterialKind,
     /// What fills the side that the surface normal points away from, if it does anything to light.
-    pub medium: Option<Medium>,
+    pub medium: Option<Box<Medium>>,
     /// What fills the side that the surface normal points into. Without it, what fills the space around does.
-    pub exterior_medium: Option<Medium>,
+    pub exterior_medium: Option<Box<Medium>>,
 }
 
 impl Material {
     /// The media that it states.
     pub fn media(&self) -> impl Iterator<Item = &Medium> {
-        self.medium.iter().chain(&self.exterior_medium)
+        [&self.medium, &self.exterior_medium].into_iter().filter_map(|medium| medium.as_deref())
     }
 
     /// The media that it states, to be changed.
     pub fn media_mut(&mut self) -> impl Iterator<Item = &mut Medium> {
-        self.medium.iter_mut().chain(&mut self.exterior_medium)
+        [&mut self.medium, &mut self.exterior_medium].into_iter().filter_map(|medium| medium.as_deref_mut())
     }
 }
 

@@ -237,13 +237,16 @@ fn materials_and_spectra() {
     assert_eq!(kind(&scene, "quarter"), &MaterialKind::PolarisingSheet { axis: [1.0, 0.0, 0.0], sheet });
     let dusty = MaterialKind::blend(toy, MaterialKind::Black, 0.125);
     assert_eq!(kind(&scene, "dusty"), &dusty);
-    let medium = |name: &str| scene.materials.iter().find(|m| m.name == name).and_then(|m| m.medium.clone());
+    let medium =
+        |name: &str| scene.materials.iter().find(|m| m.name == name).and_then(|m| m.medium.as_deref().cloned());
     let absorbing = |per_m| Some(Medium::absorbing(Spectrum::Constant(per_m)));
     assert_eq!(medium("solid"), absorbing(0.5));
     // −ln ¼ over 2 m.
     assert_eq!(medium("own glass"), absorbing(4.0_f64.ln() / 2.0));
     assert_eq!(medium("dispersive"), None);
-    let exterior = |name: &str| scene.materials.iter().find(|m| m.name == name).and_then(|m| m.exterior_medium.clone());
+    let exterior = |name: &str| {
+        scene.materials.iter().find(|m| m.name == name).and_then(|m| m.exterior_medium.as_deref().cloned())
+    };
     assert_eq!((exterior("milk"), exterior("solid")), (absorbing(0.125), None));
     let cloud = Medium {
         absorption: Spectrum::Constant(0.25),

@@ -172,8 +172,8 @@ impl StatedMedia {
         let is_filled = material.medium.is_some() && material.kind.solid().is_none();
         let medium = |medium| Medium::new(medium, range_nm, frame);
         let stated = || Self {
-            interior: material.medium.as_ref().and_then(medium),
-            exterior: material.exterior_medium.as_ref().map(medium),
+            interior: material.medium.as_deref().and_then(medium),
+            exterior: material.exterior_medium.as_deref().map(medium),
         };
         (is_filled || material.kind.media().is_some()).then(|| Box::new(stated()))
     }
@@ -252,5 +252,23 @@ impl Media {
         let entered = far.filter(|&place| !before.holds(place));
         let deciding = left.into_iter().chain(entered).max_by_key(|&place| self.rank(place));
         Some(deciding.map(|(object, _)| object))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Glass that holds juice stands in smoke, which has a priority, and a bubble that states the juice outside of it stands in the juice.
+    #[test]
+    fn where_a_solid_holds_a_place_what_a_surface_states_there_changes_nothing() {
+        let states = |exterior| StatedMedia { interior: None, exterior };
+        let (glass, bubble) = (states(None), states(Some(None)));
+        for (solids, has_body, is_outside) in [(0, false, true), (1, true, false)] {
+            let mut stack = MediumStack::NOTHING;
+            (stack.body, stack.len) = (Some((&glass, 0)), solids);
+            stack.meet(Some((&bubble, 0)), true);
+            assert_eq!((stack.body.is_some(), stack.outside_of.is_some()), (has_body, is_outside), "{solids} solids");
+        }
     }
 }

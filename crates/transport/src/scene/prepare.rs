@@ -290,7 +290,7 @@ fn media(scene: &Scene, frame: &SceneFrame) -> Result<Media, PrepareError> {
         let Some((index, priority)) = scene.materials[object.material].kind.solid() else { return Ok(None) };
         match object.shape.open_edges() {
             None => {
-                let medium = scene.materials[object.material].medium.as_ref();
+                let medium = scene.materials[object.material].medium.as_deref();
                 let medium = medium.and_then(|medium| Medium::new(medium, range_nm, frame));
                 Ok(Some(Solid { priority, index: index.cloned(), medium }))
             }

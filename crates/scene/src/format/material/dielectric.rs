@@ -113,7 +113,8 @@ pub(super) fn dielectric<'f>(
         }
     });
     let kind = tinted(kind, [&form.reflected_tint, &form.transmitted_tint], spectra, files, reader)?;
-    Some(Made { kind, medium: filling?, exterior_medium: around? })
+    let (medium, exterior_medium) = (filling?.map(Box::new), around?.map(Box::new));
+    Some(Made { kind, medium, exterior_medium })
 }
 
 /// Whether light that meets several facets is counted. Of facets of two widths it cannot be, nor where a film reflects each wavelength and

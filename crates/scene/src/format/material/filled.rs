@@ -21,7 +21,7 @@ pub(super) fn filled<'f>(
     let (message, hint) = match of.kind.solid() {
         _ if of.medium.is_some() => ("what is filled already holds an absorption or a medium", "leave one of them out"),
         Some(_) => ("what is filled cannot have a \"priority\"", "give the dielectric itself a \"medium\""),
-        None => return Some(Made { medium: Some(medium), ..of }),
+        None => return Some(Made { medium: Some(Box::new(medium)), ..of }),
     };
     reader.error_hint(Code::KeyConflict, form.at.head(), message, hint);
     None
