@@ -29,8 +29,8 @@ pub fn judge(truth: &Truth, reading: &Reading, significance: f64) -> Verdict {
     judge_to(truth, reading, significance, truth.must_resolve())
 }
 
-/// The same of a reading that must be able to see a bias of `needed`, in units of the value. With [`Truth::nearest_mistake`] it must exclude the
-/// known mistakes alone. With infinity it fails where it is wrong, not where it shows nothing, as one of many seeds that show something together.
+/// The same of a reading that must be able to see a bias of `needed`, in units of the value. With infinity it fails where it is wrong, not where it
+/// shows nothing: as one of many seeds that show something together.
 pub fn judge_to(truth: &Truth, reading: &Reading, significance: f64, needed: f64) -> Verdict {
     if reading.nonfinite > 0 {
         return Verdict::broken(&truth.name, format!("{} samples were not finite numbers", reading.nonfinite));
@@ -41,7 +41,7 @@ pub fn judge_to(truth: &Truth, reading: &Reading, significance: f64, needed: f64
         let nearest = truth.mistakes().iter().find(|mistake| (mistake.value - truth.value()).abs() <= needed);
         let what = match nearest {
             Some(mistake) => format!("\"{}\" ({:.10})", mistake.what, mistake.value),
-            None => format!("a bias of {} %", 100.0 * truth.must_see),
+            None => format!("a bias of {} %", 100.0 * needed / truth.value().abs()),
         };
         return verdict
             .without_power(&format!("too noisy to exclude {what}: take {:.1} times the samples", noise * noise));

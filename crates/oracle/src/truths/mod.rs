@@ -320,16 +320,15 @@ impl Truth {
     /// distance of the nearest known mistake. A dark picture is held to its mistakes alone.
     #[must_use]
     pub fn must_resolve(&self) -> f64 {
-        let value = self.value();
-        let relative = if value == 0.0 { f64::INFINITY } else { self.must_see * value.abs() };
-        relative.min(self.nearest_mistake())
+        self.must_resolve_with(self.must_see)
     }
 
-    /// The absolute bias of the known mistake that is nearest to the value; infinite if none is known.
+    /// The same with this share of the value instead.
     #[must_use]
-    pub fn nearest_mistake(&self) -> f64 {
+    pub fn must_resolve_with(&self, share: f64) -> f64 {
         let value = self.value();
-        self.mistakes().iter().map(|mistake| (mistake.value - value).abs()).fold(f64::INFINITY, f64::min)
+        let relative = if value == 0.0 { f64::INFINITY } else { share * value.abs() };
+        self.mistakes().iter().map(|mistake| (mistake.value - value).abs()).fold(relative, f64::min)
     }
 
     /// A bound on the absolute bias of a reading that took this many paths and cut some, though the scene did not end them. None of these

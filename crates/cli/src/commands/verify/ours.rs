@@ -218,15 +218,12 @@ pub(super) fn judged<'a>(
     }
 }
 
-/// The bias that a reading must be able to see after so many rays.
+/// The bias that a reading must be able to see that has taken this many rays.
 fn must_resolve(args: &VerifyArgs, truth: &Truth, rays: u64) -> f64 {
     let of_all = args.names.is_empty() && args.suite.is_none() && !args.thorough;
     match () {
         () if args.coarse => f64::INFINITY,
-        () if of_all && rays >= RAYS_TO_SEE => {
-            let least = truth.must_see.max(LEAST_SEEN) * truth.value().abs();
-            truth.nearest_mistake().min(if least > 0.0 { least } else { f64::INFINITY })
-        }
+        () if of_all && rays >= RAYS_TO_SEE => truth.must_resolve_with(truth.must_see.max(LEAST_SEEN)),
         () => truth.must_resolve(),
     }
 }
