@@ -2,20 +2,22 @@
 
 use super::common::rendering::{mean_y, parse, render};
 use etalon_scene::{LightSelection, Scene};
-use etalon_transport::{Study, prepare};
+use etalon_transport::{Control, Film, Prepared, Study, prepare, prepare_frame};
 
-/// A floor under a ball lamp and a sun of hundreds of times its power, with a roof between the two or not.
+/// A floor and a ball of glass under a ball lamp, and a sun of hundreds of times its power, with a roof below the sun or not. The camera turns.
 fn scene(roof: &str, seed: u64) -> Scene {
     parse(&format!(
         r#"{{ "etalon": 1,
-        "camera": {{ "type": "perspective", "position_m": [0, -2, 1], "look_at_m": [0, 0, 0], "vertical_fov_deg": 50 }},
+        "camera": {{ "type": "perspective", "position_m": [0, -2, 1], "look_at_m": [0, 0, 0], "vertical_fov_deg": 50, "shutter_s": [0, 0.02],
+            "keyframes": [{{ "time_s": 0 }}, {{ "time_s": 2, "transform": [{{ "rotate": {{ "axis": [0, 0, 1], "angle_deg": 60 }} }}] }}] }},
         "film": {{ "width": 32, "height": 32 }},
         "integrator": {{ "spp": 16, "seed": {seed} }},
         "materials": {{ "grey": {{ "type": "lambert", "reflectance": 0.5 }}, "black": {{ "type": "black" }} }},
         "lights": [{{ "type": "directional", "direction": [0, 0, -1], "irradiance": 300 }}],
         "objects": [
             {{ "shape": {{ "type": "parallelogram", "origin_m": [-2, -2, 0], "u_m": [4, 0, 0], "v_m": [0, 4, 0] }}, "material": "grey" }},
-            {{ "shape": {{ "type": "sphere", "center_m": [0.3, 0, 1.2], "radius_m": 0.3 }}, "material": "black", "emission": {{ "radiance": 1 }} }}{roof}
+            {{ "shape": {{ "type": "sphere", "center_m": [0.3, 0, 1.2], "radius_m": 0.3 }}, "material": "black", "emission": {{ "radiance": 1 }} }},
+            {{ "shape": {{ "type": "sphere", "center_m": [-0.5, 0, 0.3], "radius_m": 0.3 }}, "material": {{ "type": "dielectric", "interior": 1.5 }} }}{roof}
         ] }}"#
     ))
 }
@@ -51,4 +53,23 @@ fn a_light_that_the_roof_hides_gets_few_shadow_rays() {
     let (square, mean) = squares(&|seed| by_power(scene(ROOF, seed)));
     assert!(learned_square < 0.3 * square, "{learned_square} is not much less than {square}");
     assert!((learned_mean / mean - 1.0).abs() < 0.1, "{learned_mean} and {mean}");
+}
+
+/// Trials of one frame must not depend on what those of another have decided.
+#[test]
+fn what_is_learned_for_a_frame_is_what_it_learns_alone() {
+    let film =
+        |prepared: &Prepared| -> Film { prepared.render(&prepared.whole(None), &|_| Control::Continue).unwrap() };
+    let mut scene = scene(ROOF, 1);
+    let (mut earlier, mut learned) = (None, Vec::new());
+    for opens_s in [0.0, 0.7, 1.4] {
+        scene.set_shutter([opens_s, opens_s + 0.02]);
+        let frame = prepare_frame(&scene, &Study::default(), earlier.take()).unwrap();
+        let alone = prepare(&scene).unwrap();
+        assert_eq!(frame.learned_light_shares(), alone.learned_light_shares(), "at {opens_s} s");
+        assert!(film(&frame).pixels().eq(film(&alone).pixels()), "at {opens_s} s");
+        learned.push(frame.learned_light_shares());
+        earlier = Some(frame);
+    }
+    assert!(learned.iter().all(Option::is_some), "{learned:?}");
 }

@@ -81,10 +81,9 @@ pub(crate) fn try_light_choice<M: WavelengthModel<N>, P: Polarisation<N>, const 
     });
     let means: Vec<f64> = of_pixels.iter().map(|&(mean, ..)| mean).collect();
     let scales = Scales::new(&tried, &means);
-    let levels = tried.levels(&means);
-    let variances = of_pixels.iter().zip(&levels).map(|((_, square, _), (level, _))| (square - level * level).max(0.0));
+    let variances = scales.sums_of_variances(of_pixels.iter().map(|&(_, square, _)| square));
     let squares = |group: usize| scales.sums(of_pixels.iter().map(|(.., squares)| squares[group]));
-    LightChoiceTrial { variances: scales.sums(variances), squares: (0..groups).map(squares).collect() }
+    LightChoiceTrial { variances, squares: (0..groups).map(squares).collect() }
 }
 
 impl LightChoiceTrial {

@@ -36,7 +36,7 @@ impl Tried {
         Self::at_most(PIXELS, prepared)
     }
 
-    /// No more than so many of them, about.
+    /// At most this many of them, about.
     pub(crate) fn at_most(most: u64, prepared: &Prepared) -> Self {
         let film = &prepared.scene.film;
         let pixels = u64::from(film.width) * u64::from(film.height);
@@ -84,20 +84,26 @@ impl Tried {
 /// What the variance of each pixel counts against: the square of the level about it, as it is seen, and that of the whole picture, as its error is
 /// stated.
 pub(crate) struct Scales {
-    about: Vec<f64>,
+    /// [`Tried::levels`]
+    levels: Vec<(f64, f64)>,
     of_all: f64,
 }
 
 impl Scales {
     pub(crate) fn new(tried: &Tried, means: &[f64]) -> Self {
         let mean = means.iter().sum::<f64>() / means.len() as f64;
-        Self { about: tried.levels(means).into_iter().map(|(_, scale)| scale).collect(), of_all: mean * mean }
+        Self { levels: tried.levels(means), of_all: mean * mean }
+    }
+
+    /// The sums of the variances of all pixels, of which these are the mean squares.
+    pub(crate) fn sums_of_variances(&self, squares: impl Iterator<Item = f64>) -> [f64; 2] {
+        self.sums(squares.zip(&self.levels).map(|(square, (level, _))| (square - level * level).max(0.0)))
     }
 
     /// The sums of the variances of all pixels.
     pub(crate) fn sums(&self, variances: impl Iterator<Item = f64>) -> [f64; 2] {
         let against = |variance: f64, scale: f64| if scale > 0.0 { variance / scale } else { 0.0 };
-        variances.zip(&self.about).fold([0.0; 2], |sums, (variance, about)| {
+        variances.zip(&self.levels).fold([0.0; 2], |sums, (variance, (_, about))| {
             [sums[0] + against(variance, *about), sums[1] + against(variance, self.of_all)]
         })
     }

@@ -1,8 +1,8 @@
 //! Which light a shadow ray aims at.
 //!
 //! Few lights are chosen in proportion to their power, with a share spread evenly: one table for all points. Of many, most are too far
-//! away to matter: those that are somewhere are chosen by a [`LightTree`], for each point anew, with a tenth left to the table, so that
-//! a light which the tree thinks little of is still found with a bounded weight.
+//! away to matter. Those that are somewhere are chosen by a [`LightTree`], for each point anew. A tenth is left to the table: a light that
+//! the tree thinks little of is still found, with a bounded weight.
 //!
 //! Power does not know what is in the way: in a room a lamp lights more than the sky above the roof. A trial before the picture
 //! [learns](LightTable::learn) how often each light is worth a shadow ray. It leaves a tenth to the table by power, too.

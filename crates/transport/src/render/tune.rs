@@ -13,11 +13,10 @@ use crate::scene::prepare_error::PrepareError;
 use crate::wavelength::guide::Regions;
 use etalon_scene::{LightSampling, LightSelection, LightTracing, Scene};
 
-/// Pixels and samples of the trials of lights, and pixels of the first, which has one sample of each and says whether the others are worth their time.
-const ALL: (u64, u32) = (PIXELS, SAMPLES);
-const FEW_PIXELS: u64 = 256;
-/// Most objects of a scene in which lights are tried. A ray may meet all of them at one point, and must then remember each: with 100,000 a trial
-/// would take minutes, and hundreds of megabytes.
+/// Pixels and samples of the trials of lights. The first takes one sample of few pixels, and says whether the others are worth their time.
+const LIGHT_TRIAL: (u64, u32) = (PIXELS, SAMPLES);
+const FIRST_LIGHT_TRIAL: (u64, u32) = (256, 1);
+/// Most objects of a scene in which lights are tried. A ray may meet all of them at one point: with 100,000 the trials take minutes.
 const MOST_OBJECTS: usize = 10_000;
 /// Most groups of lights whose shares are learned: of more the trial would know too little.
 const MOST_LIGHT_GROUPS: usize = 64;
@@ -78,8 +77,8 @@ pub fn prepare_frame(scene: &Scene, study: &Study, earlier: Option<Prepared>) ->
 }
 
 impl Prepared {
-    /// Decides by trials, with random numbers of a seed: how often each light is chosen, whether shadow rays go through glass, what directions are guided by, and from how many
-    /// vertices specular connections are made. Then whether light is followed from the lamps, and which wavelengths are drawn where.
+    /// Decides by trials, with random numbers of a seed: how often each light is chosen, whether shadow rays go through glass, what directions are
+    /// guided by, and from how many vertices specular connections are made. Then whether light is followed from the lamps, and which wavelengths are drawn where.
     pub fn tune(&mut self, seed: u64) {
         // An earlier frame may have found otherwise, and each trial depends on what those before it have found.
         self.wavelength_guide = None;
@@ -107,12 +106,12 @@ impl Prepared {
         };
         let by_shadow_rays = |effort| try_it(self, seed, Some(LightSampling::Light), effort).shares(&self.lights);
         // Few paths say whether more are worth their time.
-        let Some(shares) = by_shadow_rays((FEW_PIXELS, 1)).and_then(|_| by_shadow_rays(ALL)) else { return };
+        let Some(shares) = by_shadow_rays(FIRST_LIGHT_TRIAL).and_then(|_| by_shadow_rays(LIGHT_TRIAL)) else { return };
         // Other random numbers than those that they were learned from.
         let other_seed = mix(seed);
-        let by_power = try_it(self, other_seed, None, ALL);
+        let by_power = try_it(self, other_seed, None, LIGHT_TRIAL);
         self.lights.learn(Some(&shares));
-        if !try_it(self, other_seed, None, ALL).is_better_than(&by_power) {
+        if !try_it(self, other_seed, None, LIGHT_TRIAL).is_better_than(&by_power) {
             self.lights.learn(None);
         }
     }
