@@ -94,6 +94,10 @@ fn threads_stages_and_replays_give_the_same_bytes() {
         for threads in [2, 3, 7] {
             assert_eq!(render(&prepared, &Extent { threads: Some(threads), ..whole.clone() }), film);
         }
+        // A copy, by the threads of a pool of the caller's.
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
+        let copy = prepared.clone();
+        assert_eq!(pool.install(|| render(&copy, &whole)), film);
         // Two stages of samples.
         let mut staged = render(&prepared, &Extent { samples: 0..3, ..whole.clone() });
         prepared.render_onto(&mut staged, &Extent { samples: 3..8, ..whole.clone() }, &|_| Control::Continue).unwrap();

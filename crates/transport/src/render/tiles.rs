@@ -43,6 +43,7 @@ pub struct ThreadError(#[from] rayon::ThreadPoolBuildError);
 impl Prepared {
     /// Renders samples of each tile on `threads` threads; `None` is one for each core. `sums_of` says what a tile holds before, by its number, and
     /// `on_piece` keeps what it holds after each piece. Once this says stop, pieces that are under way are finished and no other is begun.
+    /// If the caller is a thread of a pool of rayon's, that pool does the work instead.
     ///
     /// Samples given in ascending ranges leave the same bytes as one range, and tiles the same in any order.
     pub fn render_tiles(
@@ -53,30 +54,35 @@ impl Prepared {
         on_piece: &(dyn Fn(&Piece<'_>) -> Control + Sync),
     ) -> Result<(), ThreadError> {
         let Some(all) = tiles.iter().map(|(rect, _)| *rect).reduce(PixelRect::union) else { return Ok(()) };
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build()?;
         let stopped = AtomicBool::new(false);
         let goes_on = || !stopped.load(Ordering::Relaxed);
         let of_tiles: Vec<_> = tiles.iter().map(|(_, samples)| samples.clone()).collect();
-        for round in self.light_rounds(&of_tiles) {
-            if !goes_on() {
-                break;
-            }
-            let splats = pool.install(|| self.splats(round.clone(), all));
-            let advance = |(number, (rect, samples)): (usize, &(PixelRect, Range<u32>))| {
-                let own = samples.start.max(round.start)..samples.end.min(round.end);
-                if own.is_empty() || !goes_on() {
-                    return;
+        let render = || {
+            for round in self.light_rounds(&of_tiles) {
+                if !goes_on() {
+                    break;
                 }
-                let mut sums = sums_of(number);
-                for piece in pieces(*rect, own).take_while(|_| goes_on()) {
-                    let counters = &self.render_tile(*rect, piece.clone(), &splats, &mut sums);
-                    let piece = Piece { number, rect: *rect, samples: piece, counters, sums: &sums };
-                    if on_piece(&piece) == Control::Stop {
-                        stopped.store(true, Ordering::Relaxed);
+                let splats = self.splats(round.clone(), all);
+                let advance = |(number, (rect, samples)): (usize, &(PixelRect, Range<u32>))| {
+                    let own = samples.start.max(round.start)..samples.end.min(round.end);
+                    if own.is_empty() || !goes_on() {
+                        return;
                     }
-                }
-            };
-            pool.install(|| tiles.par_iter().enumerate().for_each(advance));
+                    let mut sums = sums_of(number);
+                    for piece in pieces(*rect, own).take_while(|_| goes_on()) {
+                        let counters = &self.render_tile(*rect, piece.clone(), &splats, &mut sums);
+                        let piece = Piece { number, rect: *rect, samples: piece, counters, sums: &sums };
+                        if on_piece(&piece) == Control::Stop {
+                            stopped.store(true, Ordering::Relaxed);
+                        }
+                    }
+                };
+                tiles.par_iter().enumerate().for_each(advance);
+            }
+        };
+        match rayon::current_thread_index() {
+            Some(_) => render(),
+            None => rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build()?.install(render),
         }
         Ok(())
     }

@@ -28,7 +28,8 @@ use etalon_simd::Level;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-/// A scene that is ready to be rendered.
+/// A scene that is ready to be rendered. A copy of it takes memory, and no trials.
+#[derive(Clone)]
 pub struct Prepared {
     pub(crate) scene: Scene,
     pub(crate) frame: SceneFrame,
@@ -37,7 +38,7 @@ pub struct Prepared {
     camera_motion: Option<Moving>,
     /// The camera's compound lens, if it has one.
     lens: Option<Arc<PreparedLens>>,
-    pub(crate) geometry: Geometry,
+    pub(crate) geometry: Arc<Geometry>,
     /// Where paths begin instead of at the camera, column by column; empty where the scene is a picture.
     pub(crate) receivers: Vec<PreparedReceiver>,
     pub(crate) surfaces: Surfaces,
@@ -230,7 +231,7 @@ pub(crate) fn build(scene: &Scene, study: &Study, earlier: Option<Prepared>) -> 
         media,
         has_boundaries,
         surrounding: scene.medium.as_ref().and_then(|medium| Medium::new(medium, range_nm, &frame)),
-        geometry,
+        geometry: Arc::new(geometry),
         receivers: scene.receivers.iter().map(|receiver| PreparedReceiver::new(receiver, &frame)).collect(),
         surfaces,
         lights,

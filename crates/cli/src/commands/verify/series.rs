@@ -1,18 +1,18 @@
 //! One scene rendered with many seeds, side by side, and on and on.
 
-use std::num::NonZero;
 use std::sync::Mutex;
-use std::thread;
 
 use etalon_oracle::truths::Quantity;
 use etalon_scene::Scene;
 use etalon_transport::{Control, Counters, Extent, Film, PixelRect, Prepared, Study, prepare_study};
+use rayon::ThreadPool;
 
 use crate::interrupt::Interrupt;
 
 /// Films of one scene that differ by their seeds alone.
 pub(super) struct Series {
-    /// The scene, ready to be rendered, once for each thread.
+    pool: ThreadPool,
+    /// The scene, ready to be rendered, once for each thread of the pool.
     prepared: Vec<Prepared>,
     seeds: Vec<u64>,
     films: Vec<Film>,
@@ -31,11 +31,13 @@ pub(super) enum Stop {
 impl Series {
     /// Black films, one for each seed.
     pub(super) fn new(scene: &Scene, study: &Study, seeds: Vec<u64>, threads: Option<usize>) -> Result<Self, String> {
-        let threads = threads.unwrap_or_else(cores).min(seeds.len());
-        let prepare = |_| prepare_study(scene, study).map_err(|error| error.to_string());
-        let prepared: Vec<Prepared> = (0..threads).map(prepare).collect::<Result<_, _>>()?;
+        let failed = |error: &dyn std::error::Error| error.to_string();
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build();
+        let pool = pool.map_err(|error| failed(&error))?;
+        let first = prepare_study(scene, study).map_err(|error| failed(&error))?;
+        let prepared = vec![first; pool.current_num_threads()];
         let films = seeds.iter().map(|_| prepared[0].film()).collect();
-        Ok(Self { prepared, seeds, films, samples: 0 })
+        Ok(Self { pool, prepared, seeds, films, samples: 0 })
     }
 
     /// Goes on until each pixel of each film has this many samples: the same films whether at once or in several steps, and on however
@@ -47,24 +49,23 @@ impl Series {
             None => Control::Continue,
             Some(_) => Control::Stop,
         };
-        let work = |prepared: &mut Prepared| -> Result<(), Stop> {
+        let of_threads: Vec<Mutex<&mut Prepared>> = self.prepared.iter_mut().map(Mutex::new).collect();
+        let work = |thread: usize| -> Result<(), Stop> {
+            let mut prepared = of_threads[thread].lock().expect("nobody else takes it");
             loop {
                 let Some((&seed, film)) = queue.lock().expect("nobody panics while taking a film").next() else {
                     return Ok(());
                 };
                 prepared.reseed(seed);
-                // Small films are side by side already: each has one thread.
-                let extent = Extent { samples: range.clone(), ..prepared.whole(Some(1)) };
+                // Films are side by side already: most are smaller than a tile.
+                let extent = Extent { samples: range.clone(), ..prepared.whole(None) };
                 prepared.render_onto(film, &extent, &on_tile).map_err(|error| Stop::Failed(error.to_string()))?;
                 if interrupt.signal().is_some() {
                     return Err(Stop::Interrupted);
                 }
             }
         };
-        thread::scope(|scope| {
-            let threads: Vec<_> = self.prepared.iter_mut().map(|prepared| scope.spawn(|| work(prepared))).collect();
-            threads.into_iter().try_for_each(|thread| thread.join().expect("renders do not panic"))
-        })?;
+        self.pool.broadcast(|context| work(context.index())).into_iter().collect::<Result<(), Stop>>()?;
         self.samples = samples;
         Ok(())
     }
@@ -131,9 +132,4 @@ fn mean_stokes(film: &Film, rect: PixelRect, parameter: usize) -> f64 {
     };
     let sum: Option<f64> = rect.pixels().map(y).sum();
     sum.map_or(f64::NAN, |sum| sum / rect.area() as f64)
-}
-
-/// Processors that there are for us.
-fn cores() -> usize {
-    thread::available_parallelism().map_or(1, NonZero::get)
 }
