@@ -41,6 +41,7 @@ mod gltf;
 mod matrix;
 mod medium;
 mod metals;
+mod missing;
 mod mitsuba;
 mod number;
 mod obj;

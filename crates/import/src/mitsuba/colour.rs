@@ -270,7 +270,8 @@ impl Walk<'_, '_, '_> {
             if of == Of::Texture {
                 return Ok(vertex_colours::attribute(&name, scale));
             }
-            self.builder.approximate(place, format!("the mesh attribute \"{name}\" cannot stand here: it becomes 0.5"));
+            let what = format!("of meshes only colours are read, no numbers: \"{name}\" is 0.5 on the whole mesh");
+            self.builder.approximate(place, what);
             return Ok(json!(0.5));
         }
         if element.plugin() != "bitmap" {

@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 use super::Walk;
 use super::colour::Of;
 use super::element::Element;
+use crate::missing;
 
 impl Walk<'_, '_, '_> {
     pub(super) fn emitter(&mut self, element: &Element) -> Result<(), String> {
@@ -50,7 +51,7 @@ impl Walk<'_, '_, '_> {
                 json!({ "type": "directional", "direction": direction, "irradiance": irradiance })
             }
             other => {
-                self.builder.leave_out(&place, format!("the emitter \"{other}\" is not known, and is left out"));
+                self.builder.leave_out(&place, missing::emitter(other));
                 return Ok(());
             }
         };

@@ -13,6 +13,7 @@ use super::element::Element;
 use super::material::{Look, grey};
 use super::serialized;
 use crate::Placed;
+use crate::missing;
 use crate::number::{WITHOUT_DIRECTIONS, has_image, has_measured_grain, without_directions};
 use crate::relief::without_map;
 use crate::vertex_colours::{self, apart, attribute_of};
@@ -144,7 +145,7 @@ impl<'a> Walk<'a, '_, '_> {
             }
             "obj" | "ply" | "serialized" => self.mesh(element, &mut dressed)?,
             other => {
-                self.builder.leave_out(place, format!("the shape \"{other}\" is not known, and is left out"));
+                self.builder.leave_out(place, missing::shape(other));
                 element.children.iter().for_each(Element::mark);
             }
         }

@@ -13,6 +13,7 @@ use super::parameters::Parameters;
 use super::spectrum::kind;
 use crate::Placed;
 use crate::medium::fill;
+use crate::missing;
 use crate::number::{Number, WITHOUT_DIRECTIONS, has_directions, has_image, without_directions};
 use crate::relief::{has_map, without_map};
 use crate::round::{DISK_OF_TRIANGLES, disk, sphere_turn};
@@ -63,7 +64,7 @@ impl Reading<'_, '_> {
                 self.mesh(&file, place)?
             }
             other => {
-                self.builder.leave_out(place, format!("the shape \"{other}\" is not known, and is left out"));
+                self.builder.leave_out(place, missing::shape(other));
                 return Ok(());
             }
         };

@@ -131,3 +131,25 @@ fn a_mesh_without_area_is_left_out() {
     assert_eq!(scene(&imported).objects.len(), 1);
     assert!(said(&imported).iter().any(|what| what.contains("has an area")), "{:?}", said(&imported));
 }
+
+/// One line each, with what the picture lacks.
+#[test]
+fn what_has_no_counterpart_is_named_with_what_its_absence_changes() {
+    let text = r#"<scene version="3.0.0"><sensor type="perspective"/>
+<emitter type="sunsky"><float name="turbidity" value="3"/></emitter>
+<shape type="bsplinecurve"><string name="filename" value="hair.txt"/><bsdf type="hair"/></shape>
+<shape type="sdfgrid"><string name="filename" value="distances.vol"/></shape>
+<shape type="ply"><string name="filename" value="painted.ply"/><bsdf type="blendbsdf"><texture type="mesh_attribute" name="weight">
+<string name="name" value="face_share"/></texture><bsdf type="diffuse"/><bsdf type="conductor"/></bsdf></shape></scene>"#;
+    let imported = imported("xml", text);
+    assert_eq!(scene(&imported).objects.len(), 1);
+    let expected = [
+        "line 2: the emitter \"sunsky\" (a computed sky) gives no light",
+        "line 3: the shape \"bsplinecurve\" (curves) is not seen and has no shadow",
+        "line 4: the shape \"sdfgrid\" (a grid of distances) is not seen and has no shadow",
+        "line 5: of meshes only colours are read, no numbers: \"face_share\" is 0.5 on the whole mesh",
+    ];
+    for line in expected {
+        assert_eq!(said(&imported).iter().filter(|told| *told == line).count(), 1, "{line}\n{:#?}", said(&imported));
+    }
+}

@@ -204,7 +204,7 @@ fn a_mirrored_mesh_of_mitsuba_shines_from_the_side_that_it_does_there() {
 fn what_mitsuba_says_and_we_cannot_is_listed_with_its_line() {
     let imported = imported("xml", MITSUBA);
     let said = said(&imported);
-    assert_eq!(said, ["line 27: the shape \"hair\" is not known, and is left out"]);
+    assert_eq!(said, ["line 27: the shape \"hair\" (curves) is not seen and has no shadow"]);
 }
 
 #[test]
@@ -380,7 +380,9 @@ fn a_depth_beyond_all_limits_is_the_largest_that_a_scene_can_say() {
 #[test]
 fn what_pbrt_says_and_we_cannot_is_listed_with_its_line() {
     let said = said(&imported("pbrt", PBRT));
-    for line in ["line 21: \"float g\" is ignored", "line 35: the shape \"curve\" is not known, and is left out"] {
+    for line in
+        ["line 21: \"float g\" is ignored", "line 35: the shape \"curve\" (curves) is not seen and has no shadow"]
+    {
         assert!(said.iter().any(|l| l == line), "{line}\n{said:#?}");
     }
     assert_eq!(said.len(), 2, "{said:#?}");
