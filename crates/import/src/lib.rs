@@ -197,8 +197,12 @@ pub fn import(path: &Path, prefix: &str, options: &Options) -> Result<Imported, 
     let fail = |message: String| ImportError { path: path.to_owned(), message };
     let bytes = read_file(path).map_err(|why| fail(format!("cannot be read: {why}")))?;
     let folder = path.parent().unwrap_or(Path::new(""));
-    let near = |name: &str| read_file(&folder.join(name));
     let kind = extension(path);
+    let near = |name: &str| match read_file(&folder.join(name)) {
+        // The folder that the program runs in comes last, as in Mitsuba.
+        Err(why) if kind == "xml" => read_file(Path::new(name)).map_err(|_| why),
+        read => read,
+    };
     let source = path.file_name().unwrap_or_default().to_string_lossy();
     import_bytes_with(&kind, &bytes, &near, prefix, &source, options).map_err(fail)
 }

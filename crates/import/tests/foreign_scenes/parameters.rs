@@ -55,3 +55,17 @@ fn files_are_looked_for_in_the_folders_that_the_scene_names_the_last_one_first()
     let many = SCENE.replace(r#"<path value="textures"/>"#, &r#"<path value="a"/>"#.repeat(40));
     assert!(import(&many, &[], "thing.ply").unwrap_err().contains("folders"));
 }
+
+/// Tests run in the folder of their package.
+#[test]
+fn what_is_not_beside_a_scene_is_looked_for_in_the_working_folder() {
+    let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("elsewhere");
+    std::fs::create_dir_all(&folder).unwrap();
+    let imported = |name: &str, file: &str| {
+        let scene = folder.join(name);
+        std::fs::write(&scene, SCENE.replace("thing.ply", file)).unwrap();
+        etalon_import::import(&scene, "", &Options::default()).map_err(|error| error.to_string())
+    };
+    assert_eq!(imported("found.xml", "fuzz\\seeds\\ply\\ascii.ply").unwrap().taken_over.meshes, 1);
+    assert!(imported("missing.xml", "fuzz/seeds/ply/none.ply").unwrap_err().contains("cannot be read"));
+}
