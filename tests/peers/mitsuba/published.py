@@ -170,9 +170,10 @@ def compared(mi, scene, stem, args):
                 break
         result[variant] = judge(channels(ours)[0], passes)
     judged = "etalon" in result and "refused" not in result
+    variant = POLARISED if is_polarised else VARIANTS[0]
     # The texels are taken from the RGB variant.
-    if judged and not agrees(result) and not isinstance(result.get(VARIANTS[1]), str) and (texels := skies(mi, scene, given, args.out)):
-        variant = POLARISED if is_polarised else VARIANTS[0]
+    rendered = not any(isinstance(result.get(name), str) for name in (variant, VARIANTS[1]))
+    if judged and rendered and not agrees(result) and (texels := skies(mi, scene, given, args.out)):
         mi.set_variant(variant)
         result[FINE_SKY] = judge(channels(ours)[0], by_mitsuba(mi, scene, given, args, texels))
     return result
