@@ -27,7 +27,7 @@ mod varying;
 
 pub use compound_lens::{CompoundLens, LensCoating, LensSurface};
 pub use daylight::{DaylightExtremes, DaylightLook, DaylightPattern, DaylightSky};
-pub use detail::{Bitangent, OpacityImage, Relief};
+pub use detail::{Bitangent, OpacityImage, Relief, Terminator};
 pub use emission::{Emission, EmissionSides};
 pub use environment::{EnvironmentImage, EnvironmentProjection};
 pub use film::{Bands, BandsError, Film, Filter, MOST_BANDS};

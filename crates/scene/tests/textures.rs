@@ -152,7 +152,7 @@ fn images_of_opacity_normals_and_heights_arrive() {
     // Chequers of (230, 230, 230) and (40, 40, 60), as numbers and not as sRGB.
     assert!((image.texture.image.texel(1, 0)[0] - 60.0 / 255.0).abs() < 1e-6);
     assert_eq!(image.eval([0.1, 0.1]), 1.0);
-    let Some(Relief::Normals { texture, strength, bitangent }) =
+    let Some(Relief::Normals { texture, strength, bitangent, .. }) =
         one(r#""normal_map": {"file": "files/chequers.png", "strength": 2}"#).relief
     else {
         panic!("a normal map")
@@ -163,7 +163,8 @@ fn images_of_opacity_normals_and_heights_arrive() {
     );
     assert_eq!(bitangent, Bitangent::AlongV);
     let keys = r#"{"file": "files/chequers.png", "strength": [1, -0.5], "bitangent": "across-u", "encoding": "srgb", "filter": "nearest"}"#;
-    let Some(Relief::Normals { texture, strength, bitangent }) = one(&format!("\"normal_map\": {keys}")).relief else {
+    let Some(Relief::Normals { texture, strength, bitangent, .. }) = one(&format!("\"normal_map\": {keys}")).relief
+    else {
         panic!("a normal map")
     };
     assert_eq!((strength, bitangent, texture.filter), ([1.0, -0.5], Bitangent::AcrossU, TextureFilter::Nearest));

@@ -1,8 +1,8 @@
 //! Images that give detail: normals, heights, opacity; and texture coordinates of round shapes. Against closed forms.
 
 use etalon_scene::{
-    Bitangent, Image, ImageTexture, MaterialKind, OpacityImage, Relief, Scene, SpectrumTexture, Texels, TextureFilter,
-    Wrap,
+    Bitangent, Image, ImageTexture, MaterialKind, OpacityImage, Relief, Scene, SpectrumTexture, Terminator, Texels,
+    TextureFilter, Wrap,
 };
 use etalon_transport::{Control, EffectName, Film, Study, prepare, prepare_study};
 use serde_json::{Value, json};
@@ -16,7 +16,7 @@ fn texture(width: u32, height: u32, texels: Vec<[f32; 3]>, filter: TextureFilter
 fn one_normal(n: [f64; 3], strength: f64) -> Relief {
     let texel = n.map(|v| (0.5 + 0.5 * v) as f32);
     let texture = texture(1, 1, vec![texel], TextureFilter::Bilinear);
-    Relief::Normals { texture, strength: [strength; 2], bitangent: Bitangent::AlongV }
+    Relief::Normals { texture, strength: [strength; 2], bitangent: Bitangent::AlongV, terminator: Terminator::Mirrored }
 }
 
 /// A square of 2 × 2 m about the origin, u along x and v along y, as a parallelogram, a mesh, and a mesh whose coordinates
@@ -108,7 +108,11 @@ fn a_normal_map_turns_the_surface_to_the_light_as_its_closed_form_says() {
 /// Heights that grow evenly with u from texel to texel: h = height·(64u − ½)/63 in the middle of the image.
 fn ramp(height_m: f64) -> Relief {
     let texels = (0..64).map(|i| [i as f32 / 63.0; 3]).collect();
-    Relief::Heights { texture: texture(64, 1, texels, TextureFilter::Bilinear), height_m }
+    Relief::Heights {
+        texture: texture(64, 1, texels, TextureFilter::Bilinear),
+        height_m,
+        terminator: Terminator::Mirrored,
+    }
 }
 
 #[test]
@@ -134,8 +138,17 @@ fn a_white_furnace_stays_white_under_any_map() {
         (0..64).map(|i: u32| [(i * 37 % 97) as f32 / 97.0, (i * 53 % 89) as f32 / 89.0, 0.55 + (i % 7) as f32 / 16.0]);
     let normals = texture(8, 8, normals.collect(), TextureFilter::Bilinear);
     let maps = [
-        Relief::Heights { texture: texture(8, 8, noise(31), TextureFilter::Bilinear), height_m: 0.5 },
-        Relief::Normals { texture: normals, strength: [1.0; 2], bitangent: Bitangent::AlongV },
+        Relief::Heights {
+            texture: texture(8, 8, noise(31), TextureFilter::Bilinear),
+            height_m: 0.5,
+            terminator: Terminator::Mirrored,
+        },
+        Relief::Normals {
+            texture: normals,
+            strength: [1.0; 2],
+            bitangent: Bitangent::AlongV,
+            terminator: Terminator::Mirrored,
+        },
     ];
     let sky = json!([{"type": "environment", "radiance": 1}]);
     let shapes = [

@@ -2,7 +2,7 @@
 
 use etalon_scene::{
     Bitangent, EnvironmentImage, EnvironmentProjection, Image, ImageTexture, Light, LightKind, MaterialKind, Mesh,
-    Motion, NumberTexture, OpacityImage, ReferenceError, Relief, Scene, Shape, SpectrumTexture, Texels,
+    Motion, NumberTexture, OpacityImage, ReferenceError, Relief, Scene, Shape, SpectrumTexture, Terminator, Texels,
 };
 use etalon_transport::{PrepareError, prepare};
 use serde_json::json;
@@ -100,7 +100,12 @@ fn images_with_too_few_texels_are_an_error_wherever_they_are() {
         broken(|scene| scene.objects[0].opacity_image = Some(OpacityImage { texture: texture(), cutoff: None })),
         "object \"ball\"",
     );
-    let relief = || Relief::Normals { texture: texture(), strength: [1.0; 2], bitangent: Bitangent::AlongV };
+    let relief = || Relief::Normals {
+        texture: texture(),
+        strength: [1.0; 2],
+        bitangent: Bitangent::AlongV,
+        terminator: Terminator::Mirrored,
+    };
     torn_image(broken(|scene| scene.groups[0].objects[0].relief = Some(relief())), "object \"kernel\"");
     let lambert = || MaterialKind::Lambert { reflectance: SpectrumTexture::Image(texture()) };
     let name = scene().materials[0].name.clone();

@@ -44,7 +44,6 @@ def lobes(roughness, anisotropic=0, metallic=0, tint=0, sheen=0, flatness=0, coa
 
 
 SUM = Known("what a rough coat returns from below is a sum over 64 cosines in Mitsuba, 1.5 % less than the integral", 0.02)
-BENT = Known("light that a bent normal sends through the surface is lost in Mitsuba; without the sky both agree", 0.006)
 EQUAL_ENERGY = Known(
     "an image that shines is of equal energy in Mitsuba's spectral variants, of D65 in its RGB variants and here",
     0.14,
@@ -111,8 +110,9 @@ CASES = [
     of("checkerboard-principled"),
     of("image-lobes"),
     of("bump", sky=0.0001),
-    of("bump", BENT, sky=0.3),
+    *(of("bump", sky=0.3, shadow=shadow) for shadow in ("false", "true")),
     of("normal"),
+    of("normal", shadow="true"),
     *(of("mesh", format=f) for f in ("obj", "ply", "serialized")),
     of("flat-mesh"),
     of("polygons"),

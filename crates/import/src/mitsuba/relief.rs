@@ -10,13 +10,7 @@ impl Walk<'_, '_, '_> {
     pub(super) fn relief(&mut self, element: &Element) -> Result<Option<(&'static str, Value)>, String> {
         let (place, bumps) = (&element.place, element.plugin() == "bumpmap");
         let scale = if bumps { element.number("scale")?.unwrap_or(1.0) } else { 1.0 };
-        if element.flag("use_shadowing_function")?.unwrap_or(true) {
-            // The factor there is 2/(1 + √(1 + a tan²θ)), a an eighth of tan² of the angle of the bend.
-            let what = "grazing light on bent surfaces is not dimmed (use_shadowing_function): normals that are bent by 20° are 1.2 % brighter in \
-                        light at 60° from the normal, 12 % at 80°. What they send through the surface is mirrored back here, and lost there: \
-                        0.5 % of the light of a sky in a comparison";
-            self.builder.leave_out(place, what);
-        }
+        let is_shadowed = element.flag("use_shadowing_function")?.unwrap_or(true);
         let texture = if bumps {
             element.nested("texture", self.ids)?.first().copied()
         } else {
@@ -40,6 +34,7 @@ impl Walk<'_, '_, '_> {
         if let Some(keys) = map.as_object_mut() {
             keys.remove("type");
         }
+        map["terminator"] = json!(if is_shadowed { "shadowed" } else { "lost" });
         Ok(Some(if bumps {
             if let Some(keys) = map.as_object_mut() {
                 keys.remove("filter");

@@ -2,7 +2,7 @@
 
 use super::{imported, said, scene};
 use etalon_import::{Imported, import_bytes};
-use etalon_scene::{Bitangent, Object, Relief, TextureFilter, UvMap, Wrap};
+use etalon_scene::{Bitangent, Object, Relief, Terminator, TextureFilter, UvMap, Wrap};
 
 /// The only object.
 fn object(imported: &Imported) -> Object {
@@ -42,7 +42,7 @@ fn heights_of_mitsuba_count_by_their_luminance() {
         (mitsuba(flipped, "bumpmap", &format!("{scale}{}", bitmap(raw))), -0.25, luminance(&|byte| byte / 255.0)),
     ];
     for (text, height, dark) in cases {
-        let Relief::Heights { texture, height_m } = relief("xml", &text) else { panic!("heights") };
+        let Relief::Heights { texture, height_m, .. } = relief("xml", &text) else { panic!("heights") };
         assert_eq!(height_m, height);
         // (40, 40, 60), in the upper right and the lower left: alike, whichever way v is counted.
         assert!((texture.image.texel(1, 0)[0] - dark).abs() < 1e-6, "{:?} is not {dark}", texture.image.texel(1, 0));
@@ -57,7 +57,8 @@ fn heights_of_mitsuba_count_by_their_luminance() {
 fn normals_of_mitsuba_stand_in_its_frame() {
     let map = |shape: &str, keys: &str| {
         let texture = format!("<texture name=\"normalmap\" type=\"bitmap\">{BITMAP}{keys}</texture>");
-        let Relief::Normals { texture, strength, bitangent } = relief("xml", &mitsuba(shape, "normalmap", &texture))
+        let Relief::Normals { texture, strength, bitangent, .. } =
+            relief("xml", &mitsuba(shape, "normalmap", &texture))
         else {
             panic!("normals")
         };
@@ -86,7 +87,7 @@ fn maps_of_pbrt_arrive_in_its_axes() {
             "Camera \"perspective\"\nWorldBegin\n{heights}MakeNamedMaterial \"m\" \"string type\" \"conductor\" \
              \"texture displacement\" \"d\"\n{reversed}NamedMaterial \"m\"\n{MESH}"
         );
-        let Relief::Heights { texture, height_m } = relief("pbrt", &text) else { panic!("heights") };
+        let Relief::Heights { texture, height_m, .. } = relief("pbrt", &text) else { panic!("heights") };
         assert_eq!((height_m, texture.uv_map), (height, UvMap::scaled([4.0, 1.0], [0.0; 2])));
         // The mean of (40, 40, 60), by the curve of sRGB.
         let srgb = |byte: f64| ((byte / 255.0 + 0.055) / 1.055).powf(2.4);
@@ -103,7 +104,9 @@ fn maps_of_pbrt_arrive_in_its_axes() {
         let text = format!(
             "{mirror}Camera \"perspective\"\nWorldBegin\nMaterial \"diffuse\" \"string normalmap\" \"chequers.png\"\n{reversed}{MESH}"
         );
-        let Relief::Normals { texture, strength: stated, bitangent } = relief("pbrt", &text) else { panic!("normals") };
+        let Relief::Normals { texture, strength: stated, bitangent, .. } = relief("pbrt", &text) else {
+            panic!("normals")
+        };
         assert_eq!(
             (stated, bitangent, texture.uv_map),
             (strength, Bitangent::AcrossU, UvMap::IDENTITY),
@@ -119,6 +122,21 @@ fn maps_of_pbrt_arrive_in_its_axes() {
         let imported = imported("pbrt", &text);
         assert_eq!((object(&imported).relief, said(&imported)), (None, Vec::new()));
     }
+}
+
+/// Both lose light, and grazing light is dimmed unless it says otherwise.
+#[test]
+fn maps_of_mitsuba_lose_light_and_those_of_pbrt_mirror_it() {
+    let bitmap = |name: &str| format!("<texture {name} type=\"bitmap\">{BITMAP}</texture>");
+    for (kind, name) in [("bumpmap", ""), ("normalmap", "name=\"normalmap\"")] {
+        let text = mitsuba("", kind, &bitmap(name));
+        assert_eq!(relief("xml", &text).terminator(), Terminator::Lost);
+        let shadowed = text.replace("<boolean name=\"use_shadowing_function\" value=\"false\"/>", "");
+        assert_eq!(relief("xml", &shadowed).terminator(), Terminator::Shadowed);
+        assert_eq!(relief("xml", &text.replace("\"false\"", "\"true\"")).terminator(), Terminator::Shadowed);
+    }
+    let text = format!("WorldBegin\nMaterial \"diffuse\" \"string normalmap\" \"chequers.png\"\n{MESH}");
+    assert_eq!(relief("pbrt", &text).terminator(), Terminator::Mirrored);
 }
 
 #[test]
@@ -141,14 +159,6 @@ fn a_map_that_cannot_be_honoured_is_listed_with_its_line() {
     let heights = "Texture \"h\" \"float\" \"imagemap\" \"string filename\" \"chequers.png\"";
     // Text, what is said, and whether a map is left.
     let cases = [
-        (
-            "xml",
-            bumpy(&bitmap).replace("value=\"false\"", "value=\"true\""),
-            "line 3: grazing light on bent surfaces is not dimmed (use_shadowing_function): normals that are bent by 20° are 1.2 % brighter in light at \
-             60° from the normal, 12 % at 80°. What they send through the surface is mirrored back here, and lost there: 0.5 % of the light of a \
-             sky in a comparison",
-            true,
-        ),
         (
             "xml",
             bumpy(&format!("{bitmap}<boolean name=\"flip_invalid_normals\" value=\"false\"/>")),

@@ -82,6 +82,7 @@ mod sources;
 mod stokes;
 mod suite_case;
 mod surfaces;
+mod terminators;
 mod textures;
 mod tints;
 mod translucent;
@@ -377,7 +378,7 @@ pub fn truths() -> Vec<Truth> {
     LIST.clone()
 }
 
-const GROUPS: [fn() -> Vec<Truth>; 61] = [
+const GROUPS: [fn() -> Vec<Truth>; 62] = [
     lamps_behind_glass::truths,
     hidden_lights::truths,
     panes::truths,
@@ -403,6 +404,7 @@ const GROUPS: [fn() -> Vec<Truth>; 61] = [
     masks::truths,
     textures::truths,
     relief::truths,
+    terminators::truths,
     sheets::truths,
     films::truths,
     gratings::truths,

@@ -7,7 +7,7 @@ use crate::json::{
     Code, Decode, Node, NonNegative, Optional, Reader, Required, Rule, SchemaBuilder, SchemaValue, Spanned,
     by_json_type,
 };
-use crate::model::{Bitangent, OpacityImage, Relief};
+use crate::model::{Bitangent, OpacityImage, Relief, Terminator};
 use crate::texture::{Channel, Encoding, ImageTexture, TextureFilter, UvMap, Wrap};
 
 /// Declares an image over the texture coordinates of a surface: its file, keys of its own, and how it is laid.
@@ -101,6 +101,8 @@ laid_image! {
         strength: Required<Strength> = "1",
         /// Which way green points.
         bitangent: Required<Bitangent> = r#""along-v""#,
+        /// What becomes of light at the horizon of the normals.
+        terminator: Required<Terminator> = r#""mirrored""#,
         /// How its numbers are to be read.
         encoding: Required<Encoding> = r#""linear""#,
         /// What it shows between the centres of its texels.
@@ -113,6 +115,8 @@ laid_image! {
     struct BumpMapForm {
         /// Height of white over black, m; below 0 white is deep.
         height_m: Required<f64>,
+        /// What becomes of light at the horizon of the normals.
+        terminator: Required<Terminator> = r#""mirrored""#,
         /// Which of its channels says the height.
         channel: Required<Channel> = r#""red""#,
         /// How its numbers are to be read.
@@ -142,6 +146,15 @@ crate::keywords!(Bitangent {
     "along-v" => Self::AlongV,
     /// To the left of growing u, seen from outside, whichever way v grows.
     "across-u" => Self::AcrossU,
+});
+
+crate::keywords!(Terminator {
+    /// What a changed normal sends through the surface is mirrored back, and so is a viewer behind its horizon: no light is lost.
+    "mirrored" => Self::Mirrored,
+    /// Such light is lost.
+    "lost" => Self::Lost,
+    /// Such light is lost, and grazing light on changed normals is dimmed.
+    "shadowed" => Self::Shadowed,
 });
 
 crate::keywords!(Channel {
@@ -257,11 +270,13 @@ pub(super) fn roughness_image(
 pub(super) fn normal_map(form: &NormalMapForm, files: &mut Files, reader: &mut Reader<'_>) -> Option<Relief> {
     let data = Data { channel: Channel::All, encoding: form.encoding?, filter: form.filter? };
     let texture = form.texture(data, files, reader)?;
-    Some(Relief::Normals { texture, strength: form.strength?.0, bitangent: form.bitangent? })
+    let (bitangent, terminator) = (form.bitangent?, form.terminator?);
+    Some(Relief::Normals { texture, strength: form.strength?.0, bitangent, terminator })
 }
 
 /// The bump map of a form.
 pub(super) fn bump_map(form: &BumpMapForm, files: &mut Files, reader: &mut Reader<'_>) -> Option<Relief> {
     let data = Data { channel: form.channel?, encoding: form.encoding?, filter: TextureFilter::Bilinear };
-    Some(Relief::Heights { texture: form.texture(data, files, reader)?, height_m: form.height_m? })
+    let texture = form.texture(data, files, reader)?;
+    Some(Relief::Heights { texture, height_m: form.height_m?, terminator: form.terminator? })
 }

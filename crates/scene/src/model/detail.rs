@@ -33,6 +33,17 @@ pub enum Bitangent {
     AcrossU,
 }
 
+/// What becomes of light that a changed normal sends through the surface, or that comes from behind that normal's horizon.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Terminator {
+    /// It is mirrored back: no light is lost.
+    Mirrored,
+    /// It is lost.
+    Lost,
+    /// It is lost, and grazing light is dimmed.
+    Shadowed,
+}
+
 /// An image by which a surface scatters around other normals than its own.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Relief {
@@ -44,6 +55,8 @@ pub enum Relief {
         strength: [f64; 2],
         /// Which way the second of them points.
         bitangent: Bitangent,
+        /// What becomes of light at its horizon.
+        terminator: Terminator,
     },
     /// A bump map: heights over the surface.
     Heights {
@@ -51,6 +64,8 @@ pub enum Relief {
         texture: ImageTexture,
         /// Height of a channel of 1 over one of 0, m; below 0 the image is one of depths.
         height_m: f64,
+        /// What becomes of light at its horizon.
+        terminator: Terminator,
     },
 }
 
@@ -59,6 +74,13 @@ impl Relief {
     pub fn texture(&self) -> &ImageTexture {
         match self {
             Self::Normals { texture, .. } | Self::Heights { texture, .. } => texture,
+        }
+    }
+
+    /// What becomes of light at its horizon.
+    pub fn terminator(&self) -> Terminator {
+        match self {
+            Self::Normals { terminator, .. } | Self::Heights { terminator, .. } => *terminator,
         }
     }
 }

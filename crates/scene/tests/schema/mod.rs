@@ -156,6 +156,7 @@ fn every_key_of_the_schema_has_a_description_and_is_exercised() {
     let of_files = ["encoding", "file", "wrap", "wrap_v"];
     let of_detail = [
         "bitangent",
+        "terminator",
         "bump_map",
         "albedo_grid",
         "channel",

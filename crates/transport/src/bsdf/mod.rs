@@ -275,7 +275,9 @@ impl Bsdf {
     /// The probability of reflection, of a surface that reflects or transmits, each in a single direction: where `u[0]` of [`Bsdf::sample`]
     /// is below it, it reflects. `None` of any other surface.
     pub(crate) fn reflection_probability(&self, wavelength_nm: f64, at: &Shading<'_>, wo: Vec3<f64>) -> Option<f64> {
-        let (n, wo) = (at.shading_normal(), at.viewer(wo));
+        let wo = at.viewer(wo);
+        let at = &at.seen_by(wo);
+        let n = at.shading_normal();
         match self {
             Self::Dielectric(glass) => Some(glass.reflection_probability(wavelength_nm, (n, at.uv), wo, at.media())),
             Self::ThinDielectric(pane) => Some(pane.reflection_probability(wavelength_nm, (n, at.uv), wo)),

@@ -46,6 +46,7 @@ impl Bsdf {
         wi: Vec3<f64>,
         lobe: Lobe,
     ) -> Option<Mueller<N>> {
+        let at = &at.seen_by(at.viewer(wo));
         let x = match self {
             Self::PolarisingSheet(sheet) => sheet.x(at, wo),
             _ => plane_of_incidence(at, wo, wi, lobe),

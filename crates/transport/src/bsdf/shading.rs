@@ -18,12 +18,22 @@
 //! every shading normal, scattering is not reciprocal (Veach 1996, *Non-symmetric Scattering in Light Transport
 //! Algorithms*). Paths from the camera are estimated rightly. Paths from lights ask [`eval`] for the camera's own answer, and at smooth surfaces
 //! [`sample_viewer`] for the way back.
+//!
+//! # Maps that lose light
+//!
+//! Other renderers lose what a normal or bump map sends through the surface. A map may ask for it (`terminator`). Then rules 3 and 4 ask for the
+//! horizon of the normal before the map. Where the two normals disagree about the side of the viewer, the map's normal is turned by half a turn about
+//! the other (Schüßler et al. 2017, *Microfacet-based Normal Mapping for Robust Monte Carlo Path Tracing*). Where they disagree about the side of the
+//! light, it is lost. A shadowed map dims what is left by 2/(1 + √(1 + a tan²θ)), with θ between the light and the normal before the map, and an eighth of
+//! tan² of the angle between both normals, at most 1, as a (Estevez, Lecocq & Stein 2019, *A Microfacet-Based Shadowing Function to Solve the Bump
+//! Terminator Problem*). Panes let light go straight on, with nothing lost.
 
 use super::{Bsdf, BsdfSample};
 use crate::media::Interface;
 use crate::mis::Density;
 use crate::texture::TexturePoint;
 use etalon_optics::{Frame, Lanes, Vec3};
+use etalon_scene::Terminator;
 
 /// A surface point as scattering sees it.
 #[derive(Clone, Copy, Debug)]
@@ -32,6 +42,8 @@ pub struct Shading<'a> {
     pub normal: Vec3<f64>,
     /// Unit normal to scatter around, on the same side, where it is another one.
     bent: Option<Vec3<f64>>,
+    /// What a map that loses light has changed.
+    unmapped: Option<Unmapped>,
     /// Texture coordinates; 0 on a surface without.
     pub uv: [f64; 2],
     /// The colour between the vertices around; white on a surface without.
@@ -46,6 +58,14 @@ pub struct Shading<'a> {
     media: Option<Interface<'a>>,
 }
 
+/// The normal before a map, and how much the map dims grazing light.
+#[derive(Clone, Copy, Debug)]
+struct Unmapped {
+    normal: Vec3<f64>,
+    /// a of the shadow: 0 dims nothing.
+    dimming: f64,
+}
+
 impl<'a> Shading<'a> {
     /// Of a surface that is what it looks like, without texture coordinates.
     pub fn flat(normal: Vec3<f64>) -> Self {
@@ -53,6 +73,7 @@ impl<'a> Shading<'a> {
         Self {
             normal,
             bent: None,
+            unmapped: None,
             uv: [0.0; 2],
             colour: [1.0; 3],
             axis: none,
@@ -126,6 +147,18 @@ impl<'a> Shading<'a> {
         Self { bent: (cos != 0.0 && turned != self.normal).then_some(turned), ..self }
     }
 
+    /// The same with the unit normal that a map makes of the one to scatter around.
+    #[must_use]
+    pub(crate) fn mapped_to(self, normal: Vec3<f64>, terminator: Terminator) -> Self {
+        let (before, bent) = (self.shading_normal(), self.bent_to(normal));
+        let dimming = match terminator {
+            Terminator::Mirrored => return bent,
+            Terminator::Lost => 0.0,
+            Terminator::Shadowed => (0.125 * tan_squared(before.dot(bent.shading_normal()))).clamp(0.0, 1.0),
+        };
+        Self { unmapped: Some(Unmapped { normal: before, dimming }), ..bent }
+    }
+
     /// The unit normal to scatter around.
     pub fn shading_normal(&self) -> Vec3<f64> {
         self.bent.unwrap_or(self.normal)
@@ -142,15 +175,57 @@ impl<'a> Shading<'a> {
 
     /// The viewer on its own side of the shading normal's horizon (rule 3).
     pub(super) fn viewer(&self, wo: Vec3<f64>) -> Vec3<f64> {
-        let n = self.shading_normal();
+        let n = self.horizon();
         let cos = n.dot(wo);
         if cos * self.normal.dot(wo) < 0.0 { (wo - n * (2.0 * cos)).renormalized() } else { wo }
     }
 
     /// Whether the BSDF may scatter to `d` in the name of a direction on the side of `wi` (rule 4).
     fn belongs(&self, d: Vec3<f64>, wi: Vec3<f64>) -> bool {
-        self.shading_normal().dot(d) * self.normal.dot(wi) > 0.0
+        self.horizon().dot(d) * self.normal.dot(wi) > 0.0
     }
+
+    /// The normal whose horizon rules 3 and 4 ask for.
+    fn horizon(&self) -> Vec3<f64> {
+        self.unmapped.map_or_else(|| self.shading_normal(), |unmapped| unmapped.normal)
+    }
+
+    /// Whether a map that loses light changes the side that a direction is on.
+    fn changes_side(&self, d: Vec3<f64>) -> bool {
+        self.unmapped.is_some_and(|unmapped| unmapped.normal.dot(d) * self.shading_normal().dot(d) <= 0.0)
+    }
+
+    /// The same as a viewer on its own side of the horizon sees it: no map that loses light changes the viewer's side.
+    pub(super) fn seen_by(self, viewer: Vec3<f64>) -> Self {
+        if self.changes_side(viewer) { self.turned() } else { self }
+    }
+
+    /// The same with the normal of a map that loses light turned by half a turn about the one before.
+    fn turned(self) -> Self {
+        let (n, horizon) = (self.shading_normal(), self.horizon());
+        Self { bent: Some((horizon * (2.0 * horizon.dot(n)) - n).renormalized()), ..self }
+    }
+
+    /// The share of light from a direction that a map leaves.
+    fn share_left(&self, wi: Vec3<f64>) -> f64 {
+        match self.unmapped {
+            Some(_) if self.changes_side(wi) => 0.0,
+            Some(Unmapped { normal, dimming }) if dimming > 0.0 => {
+                2.0 / (1.0 + (1.0 + dimming * tan_squared(normal.dot(wi))).sqrt())
+            }
+            _ => 1.0,
+        }
+    }
+
+    /// The same of light that a surface scatters: light that goes straight through a pane is not lost.
+    fn share_left_by(&self, bsdf: &Bsdf, wi: Vec3<f64>) -> f64 {
+        if bsdf.is_pane() { 1.0 } else { self.share_left(wi) }
+    }
+}
+
+/// tan² of the angle of a cosine.
+fn tan_squared(cos: f64) -> f64 {
+    (1.0 / (cos * cos) - 1.0).max(0.0)
 }
 
 /// [`Bsdf::eval`] around a bent normal.
@@ -161,12 +236,15 @@ pub(super) fn eval<const N: usize>(
     wo: Vec3<f64>,
     wi: Vec3<f64>,
 ) -> (Lanes<f64, N>, Lanes<f64, N>) {
-    let (n, viewer) = (at.shading_normal(), at.viewer(wo));
+    let viewer = at.viewer(wo);
+    let at = &at.seen_by(viewer);
+    let n = at.shading_normal();
     let mut sum = (Lanes::ZERO, Lanes::ZERO);
     for direction in [wi, at.mirrored(wi)] {
-        if at.belongs(direction, wi) {
+        let left = at.share_left(direction);
+        if left > 0.0 && at.belongs(direction, wi) {
             let (f_cos, density) = bsdf.eval_around(lambda_nm, n, at, viewer, direction);
-            sum = (sum.0 + f_cos, sum.1 + density);
+            sum = (sum.0 + f_cos * left, sum.1 + density);
         }
     }
     sum
@@ -185,8 +263,14 @@ pub(super) fn sample<const N: usize>(
     wo: Vec3<f64>,
     u: [f64; 3],
 ) -> Option<BsdfSample<N>> {
-    let (n, viewer) = (at.shading_normal(), at.viewer(wo));
+    let viewer = at.viewer(wo);
+    let at = &at.seen_by(viewer);
+    let n = at.shading_normal();
     let mut next = bsdf.sample_around(lambda_nm, n, at, viewer, u)?;
+    let left = at.share_left_by(bsdf, next.wi);
+    if left == 0.0 {
+        return None;
+    }
     // The side that the BSDF meant is the one that the triangle gives it.
     if at.normal.dot(next.wi) * n.dot(next.wi) < 0.0 {
         next.wi = at.mirrored(next.wi);
@@ -199,6 +283,7 @@ pub(super) fn sample<const N: usize>(
         let (f_cos, density) = eval(bsdf, lambda_nm, at, wo, next.wi);
         return BsdfSample::scattered(next.wi, f_cos, density, next.eta);
     }
+    next.weight = next.weight * left;
     Some(next)
 }
 
@@ -216,24 +301,37 @@ pub(super) fn sample_viewer<const N: usize>(
     u: [f64; 3],
     [u_meant, u_viewer]: [f64; 2],
 ) -> Option<(BsdfSample<N>, f64)> {
-    let n = at.shading_normal();
     let meant = [wi, at.mirrored(wi)].map(|direction| at.belongs(direction, wi).then_some(direction));
     let (meant, ways) = one_of(meant, u_meant)?;
-    let mut seen = bsdf.sample_around(lambda_nm, n, at, meant, u)?;
-    debug_assert!(matches!(seen.density, Density::Delta), "smooth surfaces have one way back");
-    let viewer = seen.wi;
-    let below = (viewer - n * (2.0 * n.dot(viewer))).renormalized();
+    // Around the normal that such a viewer sees.
+    let back = |n: Vec3<f64>| {
+        let around = Shading { bent: Some(n), ..*at };
+        let seen = bsdf.sample_around(lambda_nm, n, &around, meant, u)?;
+        debug_assert!(matches!(seen.density, Density::Delta), "smooth surfaces have one way back");
+        (at.seen_by(seen.wi).shading_normal() == n).then_some((seen, n))
+    };
+    let turned = at.unmapped.map(|_| at.turned().shading_normal());
+    let backs = [back(at.shading_normal()), turned.and_then(back)];
+    let (u_normal, u_viewer) = match at.unmapped {
+        Some(_) if u_viewer < 0.5 => (0.0, 2.0 * u_viewer),
+        Some(_) => (1.0, 2.0 * u_viewer - 1.0),
+        None => (0.0, u_viewer),
+    };
+    let ((mut seen, n), normals) = one_of(backs, u_normal)?;
+    let (viewer, horizon) = (seen.wi, at.horizon());
+    let left = Shading { bent: Some(n), ..*at }.share_left_by(bsdf, meant);
+    let below = (viewer - horizon * (2.0 * horizon.dot(viewer))).renormalized();
     let viewers = [viewer, below].map(|wo| at.belongs(viewer, wo).then_some(wo));
     let (wo, more_ways) = one_of(viewers, u_viewer)?;
     seen.wi = wo;
     let [g_i, g_o] = [wi, wo].map(|direction| at.normal.dot(direction).abs());
     let [n_i, n_o] = [meant, viewer].map(|direction| n.dot(direction).abs());
     let power = ways * more_ways * (n_i * g_o) / (n_o * g_i);
-    power.is_finite().then_some((seen, power))
+    power.is_finite().then_some((seen, power * normals * left))
 }
 
 /// One of those that there are, and how many there are.
-fn one_of(directions: [Option<Vec3<f64>>; 2], u: f64) -> Option<(Vec3<f64>, f64)> {
+fn one_of<T>(directions: [Option<T>; 2], u: f64) -> Option<(T, f64)> {
     match directions {
         [Some(first), Some(second)] => Some((if u < 0.5 { first } else { second }, 2.0)),
         [only, None] | [None, only] => Some((only?, 1.0)),

@@ -20,7 +20,7 @@ pub(crate) fn bend<'a>(
 ) -> Shading<'a> {
     let n = shading.shading_normal();
     let normal = match relief {
-        Relief::Normals { texture, strength, bitangent } => {
+        Relief::Normals { texture, strength, bitangent, .. } => {
             let [x, y, z] = texture.eval(shading.uv).map(|v| 2.0 * v - 1.0);
             let across = along_u - n * n.dot(along_u);
             if across.length_squared() == 0.0 {
@@ -31,7 +31,7 @@ pub(crate) fn bend<'a>(
             let b = if *bitangent == Bitangent::AlongV && b.dot(along_v) < 0.0 { -b } else { b };
             t * (x * strength[0]) + b * (y * strength[1]) + n * z
         }
-        Relief::Heights { texture, height_m } => {
+        Relief::Heights { texture, height_m, .. } => {
             let [slope_u, slope_v] = slopes(texture, shading.uv).map(|slope| slope * height_m * per_m);
             let jacobian = n.dot(along_u.cross(along_v));
             if jacobian == 0.0 {
@@ -41,7 +41,10 @@ pub(crate) fn bend<'a>(
         }
     };
     let squared = normal.length_squared();
-    if squared > 0.0 && squared.is_finite() { shading.bent_to(normal.normalized()) } else { shading }
+    match squared > 0.0 && squared.is_finite() {
+        true => shading.mapped_to(normal.normalized(), relief.terminator()),
+        false => shading,
+    }
 }
 
 /// Derivatives of the first channel by u and v: central differences over a texel, exact where the image is linear.
@@ -61,7 +64,7 @@ fn slopes(texture: &ImageTexture, [u, v]: [f64; 2]) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use etalon_scene::{Image, Texels, UvMap, Wrap};
+    use etalon_scene::{Image, Terminator, Texels, UvMap, Wrap};
     use std::sync::Arc;
 
     /// Eight columns and four rows, whose heights are told by column and row, both from zero and rows from the top.
@@ -112,7 +115,8 @@ mod tests {
         let texture = heights(|column, row| 0.25 * column - 0.5 * row, [1.0; 2], [0.0; 2]);
         let (height_m, per_m) = (0.1, 4.0);
         let shading = Shading::flat(n).with_uv([0.5, 0.5]);
-        let got = bend(&Relief::Heights { texture, height_m }, shading, along, per_m).shading_normal();
+        let got = bend(&Relief::Heights { texture, height_m, terminator: Terminator::Mirrored }, shading, along, per_m)
+            .shading_normal();
         // p + hn moves with u by p_u + h_u n: slopes 2 and 2 of the image.
         let raised = along.map(|v| v + n * (2.0 * height_m * per_m));
         let want = raised[0].cross(raised[1]).normalized();
@@ -126,7 +130,12 @@ mod tests {
         texture.image = Arc::new(Image::new(1, 1, Texels::F32(vec![texel])));
         let n = Vec3::new(0.0, 0.0, 1.0);
         // u grows along x, but not across the normal; v against y, or along it. What is across u is y, whatever v does.
-        let mut relief = Relief::Normals { texture, strength: [0.5; 2], bitangent: Bitangent::AlongV };
+        let mut relief = Relief::Normals {
+            texture,
+            strength: [0.5; 2],
+            bitangent: Bitangent::AlongV,
+            terminator: Terminator::Mirrored,
+        };
         for (bitangent, strength) in [(Bitangent::AlongV, [0.5, 0.5]), (Bitangent::AcrossU, [-0.5, 0.75])] {
             if let Relief::Normals { strength: s, bitangent: b, .. } = &mut relief {
                 (*s, *b) = (strength, bitangent);
