@@ -217,9 +217,10 @@ impl<'a> Shading<'a> {
         }
     }
 
-    /// The same of light that a surface scatters: light that goes straight through a pane is not lost.
-    fn share_left_by(&self, bsdf: &Bsdf, wi: Vec3<f64>) -> f64 {
-        if bsdf.is_pane() { 1.0 } else { self.share_left(wi) }
+    /// The same of light that a surface scatters to a viewer: what goes straight through a pane is not dimmed.
+    fn share_left_by(&self, bsdf: &Bsdf, viewer: Vec3<f64>, wi: Vec3<f64>) -> f64 {
+        let n = self.shading_normal();
+        if bsdf.is_pane() && n.dot(viewer) * n.dot(wi) < 0.0 { 1.0 } else { self.share_left(wi) }
     }
 }
 
@@ -267,7 +268,7 @@ pub(super) fn sample<const N: usize>(
     let at = &at.seen_by(viewer);
     let n = at.shading_normal();
     let mut next = bsdf.sample_around(lambda_nm, n, at, viewer, u)?;
-    let left = at.share_left_by(bsdf, next.wi);
+    let left = at.share_left_by(bsdf, viewer, next.wi);
     if left == 0.0 {
         return None;
     }
@@ -319,7 +320,7 @@ pub(super) fn sample_viewer<const N: usize>(
     };
     let ((mut seen, n), normals) = one_of(backs, u_normal)?;
     let (viewer, horizon) = (seen.wi, at.horizon());
-    let left = Shading { bent: Some(n), ..*at }.share_left_by(bsdf, meant);
+    let left = Shading { bent: Some(n), ..*at }.share_left_by(bsdf, viewer, meant);
     let below = (viewer - horizon * (2.0 * horizon.dot(viewer))).renormalized();
     let viewers = [viewer, below].map(|wo| at.belongs(viewer, wo).then_some(wo));
     let (wo, more_ways) = one_of(viewers, u_viewer)?;
