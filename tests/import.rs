@@ -83,7 +83,7 @@ const ALL: [Foreign; 4] = [
         text: MITSUBA,
         lossy: "\n  <shape type=\"hair\"/>\n  <shape type=\"sphere\"><bsdf type=\"velvet\"/></shape>",
         approximated: "the material \"velvet\" is not known: it becomes grey",
-        left_out: "line 8: the shape \"hair\" is not known",
+        left_out: "line 8: the shape \"hair\" (curves) is not seen and has no shadow",
         meshes: 1,
     },
     Foreign {
