@@ -284,7 +284,7 @@ pub(super) fn sample<const N: usize>(
         let (f_cos, density) = eval(bsdf, lambda_nm, at, wo, next.wi);
         return BsdfSample::scattered(next.wi, f_cos, density, next.eta);
     }
-    next.weight = next.weight * left;
+    next.weight *= left;
     Some(next)
 }
 
