@@ -6,6 +6,10 @@ use etalon_transport::{Control, Film, Prepared, Study, prepare, prepare_frame};
 
 /// A floor and a ball of glass under a ball lamp, and a sun of hundreds of times its power, with a roof below the sun or not. The camera turns.
 fn scene(roof: &str, seed: u64) -> Scene {
+    with_sun(300.0, roof, seed)
+}
+
+fn with_sun(irradiance: f64, roof: &str, seed: u64) -> Scene {
     parse(&format!(
         r#"{{ "etalon": 1,
         "camera": {{ "type": "perspective", "position_m": [0, -2, 1], "look_at_m": [0, 0, 0], "vertical_fov_deg": 50, "shutter_s": [0, 0.02],
@@ -13,7 +17,7 @@ fn scene(roof: &str, seed: u64) -> Scene {
         "film": {{ "width": 32, "height": 32 }},
         "integrator": {{ "spp": 16, "seed": {seed} }},
         "materials": {{ "grey": {{ "type": "lambert", "reflectance": 0.5 }}, "black": {{ "type": "black" }} }},
-        "lights": [{{ "type": "directional", "direction": [0, 0, -1], "irradiance": 300 }}],
+        "lights": [{{ "type": "directional", "direction": [0, 0, -1], "irradiance": {irradiance} }}],
         "objects": [
             {{ "shape": {{ "type": "parallelogram", "origin_m": [-2, -2, 0], "u_m": [4, 0, 0], "v_m": [0, 4, 0] }}, "material": "grey" }},
             {{ "shape": {{ "type": "sphere", "center_m": [0.3, 0, 1.2], "radius_m": 0.3 }}, "material": "black", "emission": {{ "radiance": 1 }} }},
@@ -35,8 +39,8 @@ fn a_light_that_the_roof_hides_gets_few_shadow_rays() {
     // The lamp comes first. A tenth stays by power.
     assert!(shares.len() == 2 && shares[0] > 0.9, "{shares:?}");
     assert_eq!(learned(&scene(ROOF, 2)), Some(shares), "another seed");
-    let in_the_open = learned(&scene("", 1));
-    assert!(in_the_open.as_ref().is_none_or(|shares| shares[1] > 0.9), "{in_the_open:?}");
+    // In the open power is right.
+    assert_eq!(learned(&scene("", 1)), None);
     let by_power = |mut scene: Scene| {
         scene.integrator.light_selection = LightSelection::Power;
         scene
@@ -55,12 +59,13 @@ fn a_light_that_the_roof_hides_gets_few_shadow_rays() {
     assert!((learned_mean / mean - 1.0).abs() < 0.1, "{learned_mean} and {mean}");
 }
 
-/// Trials of one frame must not depend on what those of another have decided.
+/// Trials of one frame must not depend on what those of another have decided. The roof leaves some of the floor in a weak sun, so both lights are
+/// worth shadow rays. In the first frame most directions at diffuse surfaces aim at the ball. In the others none do.
 #[test]
 fn what_is_learned_for_a_frame_is_what_it_learns_alone() {
     let film =
         |prepared: &Prepared| -> Film { prepared.render(&prepared.whole(None), &|_| Control::Continue).unwrap() };
-    let mut scene = scene(ROOF, 1);
+    let mut scene = with_sun(1.0, &ROOF.replace("[0, 18, 0]", "[0, 10.6, 0]"), 1);
     let (mut earlier, mut learned) = (None, Vec::new());
     for opens_s in [0.0, 0.7, 1.4] {
         scene.set_shutter([opens_s, opens_s + 0.02]);
@@ -71,5 +76,6 @@ fn what_is_learned_for_a_frame_is_what_it_learns_alone() {
         learned.push(frame.learned_light_shares());
         earlier = Some(frame);
     }
-    assert!(learned.iter().all(Option::is_some), "{learned:?}");
+    let between = |shares: &Option<Vec<f64>>| shares.as_ref().is_some_and(|shares| (0.2..0.8).contains(&shares[0]));
+    assert!(learned.iter().all(between), "{learned:?}");
 }
