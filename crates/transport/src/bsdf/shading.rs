@@ -22,11 +22,14 @@
 //! # Maps that lose light
 //!
 //! Other renderers lose what a normal or bump map sends through the surface. A map may ask for it (`terminator`). Then rules 3 and 4 ask for the
-//! horizon of the normal before the map. Where the two normals disagree about the side of the viewer, the map's normal is turned by half a turn about
-//! the other (Schüßler et al. 2017, *Microfacet-based Normal Mapping for Robust Monte Carlo Path Tracing*). Where they disagree about the side of the
-//! light, it is lost. A shadowed map dims what is left by 2/(1 + √(1 + a tan²θ)), with θ between the light and the normal before the map, and an eighth of
-//! tan² of the angle between both normals, at most 1, as a (Estevez, Lecocq & Stein 2019, *A Microfacet-Based Shadowing Function to Solve the Bump
-//! Terminator Problem*). Panes let light go straight on, with nothing lost.
+//! horizon of the normal m before the map.
+//!
+//! - If the viewer is in front of m and behind the map's normal, or the other way round, the map's normal is turned by half a turn about m (Schüßler et
+//!   al. 2017, *Microfacet-based Normal Mapping for Robust Monte Carlo Path Tracing*).
+//! - If this holds for the light, the light is lost.
+//! - A shadowed map dims what is left by 2/(1 + √(1 + a tan²θ)). θ is the angle between the light and m. a is an eighth of tan² of the angle between both
+//!   normals, at most 1 (Estevez, Lecocq & Stein 2019, *A Microfacet-Based Shadowing Function to Solve the Bump Terminator Problem*).
+//! - What goes straight through a pane is neither lost nor dimmed.
 
 use super::{Bsdf, BsdfSample};
 use crate::media::Interface;
@@ -217,7 +220,7 @@ impl<'a> Shading<'a> {
         }
     }
 
-    /// The same of light that a surface scatters to a viewer: what goes straight through a pane is not dimmed.
+    /// The same of light that a surface scatters to a viewer: what goes straight through a pane is neither lost nor dimmed.
     fn share_left_by(&self, bsdf: &Bsdf, viewer: Vec3<f64>, wi: Vec3<f64>) -> f64 {
         let n = self.shading_normal();
         if bsdf.is_pane() && n.dot(viewer) * n.dot(wi) < 0.0 { 1.0 } else { self.share_left(wi) }
