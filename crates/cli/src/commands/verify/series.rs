@@ -5,7 +5,7 @@ use std::sync::Mutex;
 use etalon_oracle::truths::Quantity;
 use etalon_scene::Scene;
 use etalon_transport::{Control, Counters, Extent, Film, PixelRect, Prepared, Study, prepare_study};
-use rayon::ThreadPool;
+use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::interrupt::Interrupt;
 
@@ -31,10 +31,9 @@ pub(super) enum Stop {
 impl Series {
     /// Black films, one for each seed.
     pub(super) fn new(scene: &Scene, study: &Study, seeds: Vec<u64>, threads: Option<usize>) -> Result<Self, String> {
-        let failed = |error: &dyn std::error::Error| error.to_string();
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build();
-        let pool = pool.map_err(|error| failed(&error))?;
-        let first = prepare_study(scene, study).map_err(|error| failed(&error))?;
+        let pool =
+            ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build().map_err(|error| error.to_string())?;
+        let first = prepare_study(scene, study).map_err(|error| error.to_string())?;
         let prepared = vec![first; pool.current_num_threads()];
         let films = seeds.iter().map(|_| prepared[0].film()).collect();
         Ok(Self { pool, prepared, seeds, films, samples: 0 })
@@ -51,13 +50,13 @@ impl Series {
         };
         let of_threads: Vec<Mutex<&mut Prepared>> = self.prepared.iter_mut().map(Mutex::new).collect();
         let work = |thread: usize| -> Result<(), Stop> {
-            let mut prepared = of_threads[thread].lock().expect("nobody else takes it");
+            let mut prepared = of_threads[thread].lock().expect("each thread has its own");
             loop {
                 let Some((&seed, film)) = queue.lock().expect("nobody panics while taking a film").next() else {
                     return Ok(());
                 };
                 prepared.reseed(seed);
-                // Films are side by side already: most are smaller than a tile.
+                // By the threads of this pool: most films are smaller than a tile.
                 let extent = Extent { samples: range.clone(), ..prepared.whole(None) };
                 prepared.render_onto(film, &extent, &on_tile).map_err(|error| Stop::Failed(error.to_string()))?;
                 if interrupt.signal().is_some() {
