@@ -133,9 +133,17 @@ pub(crate) struct Between {
     pub(super) share: f64,
 }
 
-pub(super) fn node(i: usize) -> f64 {
-    let x = i as f64 / (NODES - 1) as f64;
-    x * x
+pub(super) const fn node(i: usize) -> f64 {
+    const ALL: [f64; NODES] = {
+        let (mut nodes, mut i) = ([0.0; NODES], 0);
+        while i < NODES {
+            let x = i as f64 / (NODES - 1) as f64;
+            nodes[i] = x * x;
+            i += 1;
+        }
+        nodes
+    };
+    ALL[i]
 }
 
 impl LossTable {

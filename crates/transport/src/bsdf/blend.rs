@@ -1,6 +1,6 @@
 //! Materials side by side, finer than can be seen: f = (1 − w)·f₁ + w·f₂ of the two between whose places a number lies.
 
-use super::{Bsdf, BsdfSample, Lobe, Properties, Shading};
+use super::{Bsdf, BsdfSample, Drawn, Lobe, Properties, Shading};
 use crate::mis::Density;
 use crate::polarisation::mueller::{self, Matrix};
 use etalon_optics::{Lanes, Real, Vec3};
@@ -124,25 +124,23 @@ impl Blend {
         sums
     }
 
-    pub(super) fn sample<const N: usize>(
+    pub(super) fn draw<const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<f64>,
         at: &Shading<'_>,
         wo: Vec3<f64>,
         u: [f64; 3],
-    ) -> Option<BsdfSample<N>> {
+    ) -> Option<Drawn<N>> {
         let [u_part, u1, u2] = u;
         let (part, rest) = self.shares(at.uv).choose(u_part);
-        let next = self.parts[part].sample_around(lambda_nm, n, at, wo, [rest, u1, u2])?;
-        match next.density {
+        let drawn = self.parts[part].draw_around(lambda_nm, n, at, wo, [rest, u1, u2])?;
+        Some(match drawn {
             // The part's share is in its value and in its probability.
-            Density::Delta => Some(next),
-            Density::SolidAngle(_) => {
-                let (f_cos, density) = self.eval(lambda_nm, n, at, wo, next.wi);
-                BsdfSample::scattered(next.wi, f_cos, density, next.eta)
-            }
-        }
+            Drawn::Sample(BsdfSample { density: Density::Delta, .. }) => drawn,
+            // Both parts may scatter there.
+            Drawn::Sample(BsdfSample { wi, eta, .. }) | Drawn::Direction(wi, eta) => Drawn::Direction(wi, eta),
+        })
     }
 }
 

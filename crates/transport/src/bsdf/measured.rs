@@ -27,7 +27,7 @@
 //! J. Dupuy & W. Jakob 2018, *An Adaptive Parameterization for Efficient Material Acquisition and Rendering*, ACM Transactions on Graphics
 //! 37(6), section 4; W. Jakob, *Mitsuba 3*, plugin `measured`, for the order of directions and for the azimuths of anisotropic files.
 
-use super::{BsdfSample, Properties, Shading};
+use super::{Drawn, Properties, Shading};
 use etalon_optics::{Frame, Lanes, Real, Vec3, angle::atan2_turns};
 use etalon_scene::{MeasuredSurface, Slices, Symmetry};
 use std::f64::consts::{PI, TAU};
@@ -140,14 +140,13 @@ impl Measured {
         Some((Lanes(brdf.spectra(slices, place, nm)) * facets, density))
     }
 
-    pub(super) fn sample<const N: usize>(
+    pub(super) fn draw<const N: usize>(
         &self,
-        lambda_nm: &Lanes<f64, N>,
         n: Vec3<f64>,
         at: &Shading<'_>,
         wo: Vec3<f64>,
         u: [f64; 2],
-    ) -> Option<BsdfSample<N>> {
+    ) -> Option<Drawn<N>> {
         let viewer = self.viewer(n, at, wo)?;
         let brdf = &self.surface.brdf;
         let [x, y] = brdf.vndf().sample(&viewer.slices, brdf.luminance().sample(&viewer.slices, u));
@@ -156,9 +155,7 @@ impl Measured {
         let (sin_phi, cos_phi) = f64::sin_cos_turns(y);
         let h = Vec3::new(-sin * cos_phi, -sin * sin_phi, cos);
         let wi = viewer.world(viewer.wo.reflected_about(h));
-        // Of the direction as it came out, rounding included: below the surface the light is lost.
-        let (f_cos, density) = self.seen(lambda_nm, &viewer, viewer.local(wi))?;
-        BsdfSample::scattered(wi, f_cos, Lanes::splat(density), 1.0)
+        Drawn::reflected(wi, viewer.local(wi).z)
     }
 }
 

@@ -29,6 +29,7 @@ mod properties;
 mod rough_boundary;
 mod rough_conductor;
 mod rough_dielectric;
+mod sample;
 mod shading;
 mod table_store;
 #[cfg(test)]
@@ -57,46 +58,17 @@ pub use principled::Principled;
 pub use properties::Properties;
 pub use rough_conductor::RoughConductor;
 pub use rough_dielectric::RoughDielectric;
+pub use sample::BsdfSample;
 pub use shading::Shading;
 pub use table_store::keep_tables;
 pub use thin_dielectric::ThinDielectric;
 pub use tinted::Tinted;
 pub use translucent::Translucent;
 
-use crate::mis::Density;
 use crate::texture::PathTexture;
 use etalon_optics::{Lanes, Vec3};
 use etalon_scene::MaterialKind;
-
-/// A direction drawn from a BSDF.
-#[derive(Clone, Copy, Debug)]
-pub struct BsdfSample<const N: usize> {
-    /// Toward the light; a unit vector.
-    pub wi: Vec3<f64>,
-    /// f·|cos θ|/p in each lane, where p is the **hero's** density (or probability) of this direction.
-    pub weight: Lanes<f64, N>,
-    /// Density of `wi` for the hero wavelength.
-    pub density: Density,
-    /// Each lane's own density of this direction relative to the hero's: 0 for a lane that cannot take it.
-    pub lane_density: Lanes<f64, N>,
-    /// n_transmitted / n_incident if the path crossed an interface, else 1.
-    pub eta: f64,
-}
-
-impl<const N: usize> BsdfSample<N> {
-    /// The sample of a direction drawn with each lane's own `density` as if it were the hero, from what [`Bsdf::eval`] says
-    /// of it; `None` where the hero's density is 0, which rounding may have made of the edge of a lobe.
-    fn scattered(wi: Vec3<f64>, f_cos: Lanes<f64, N>, density: Lanes<f64, N>, eta: f64) -> Option<Self> {
-        let hero = density[0];
-        (hero > 0.0).then(|| Self {
-            wi,
-            weight: f_cos / hero,
-            density: Density::SolidAngle(hero),
-            lane_density: density / hero,
-            eta,
-        })
-    }
-}
+use sample::Drawn;
 
 /// Scattering at a surface.
 #[derive(Clone, Debug)]
@@ -267,7 +239,13 @@ impl Bsdf {
         u: [f64; 3],
     ) -> Option<BsdfSample<N>> {
         match at.is_bent() {
-            false => self.sample_around(lambda_nm, at.normal, at, wo, u),
+            false => match self.draw_around(lambda_nm, at.normal, at, wo, u)? {
+                Drawn::Sample(sample) => Some(sample),
+                Drawn::Direction(wi, eta) => {
+                    let (f_cos, density) = self.eval_around(lambda_nm, at.normal, at, wo, wi);
+                    BsdfSample::scattered(wi, f_cos, density, eta)
+                }
+            },
             true => shading::sample(self, lambda_nm, at, wo, u),
         }
     }
@@ -276,7 +254,7 @@ impl Bsdf {
     /// is below it, it reflects. `None` of any other surface.
     pub(crate) fn reflection_probability(&self, wavelength_nm: f64, at: &Shading<'_>, wo: Vec3<f64>) -> Option<f64> {
         let wo = at.viewer(wo);
-        let at = &at.seen_by(wo);
+        let at = &*at.seen_by(wo);
         let n = at.shading_normal();
         match self {
             Self::Dielectric(glass) => Some(glass.reflection_probability(wavelength_nm, (n, at.uv), wo, at.media())),
@@ -371,35 +349,41 @@ impl Bsdf {
         }
     }
 
-    /// [`Bsdf::sample`] with `n` for the only normal.
+    /// The direction of [`Bsdf::sample`], with `n` for the only normal.
     #[inline]
-    fn sample_around<const N: usize>(
+    fn draw_around<const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<f64>,
         at: &Shading<'_>,
         wo: Vec3<f64>,
         u: [f64; 3],
-    ) -> Option<BsdfSample<N>> {
+    ) -> Option<Drawn<N>> {
         match self {
-            Self::Lambert(lambert) => lambert.sample(lambda_nm, n, at.texture_point(), wo, [u[1], u[2]]),
-            Self::Mirror(mirror) => mirror.sample(lambda_nm, n, at.texture_point(), wo),
-            Self::Conductor(conductor) => conductor.sample(lambda_nm, n, at.texture_point(), wo, at.media()),
-            Self::Dielectric(dielectric) => dielectric.sample(lambda_nm, (n, at.uv), wo, u[0], at.media()),
-            Self::RoughConductor(metal) => metal.sample(lambda_nm, n, at, wo, u),
-            Self::RoughDielectric(glass) => glass.sample(lambda_nm, n, at, wo, u),
-            Self::OrenNayar(rough) => rough.sample(lambda_nm, n, at.texture_point(), wo, [u[1], u[2]]),
-            Self::Translucent(sheet) => sheet.sample(lambda_nm, n, at.texture_point(), wo, u),
-            Self::Plastic(plastic) => plastic.sample(lambda_nm, n, at, wo, u),
-            Self::Fluorescent(surface) => surface.sample(lambda_nm, n, at, wo, [u[1], u[2]]),
-            Self::ThinDielectric(pane) => pane.sample(lambda_nm, (n, at.uv), wo, u[0]),
-            Self::PolarisingSheet(sheet) => sheet.sample(lambda_nm, wo),
-            Self::Grating(grating) => grating.sample(lambda_nm, n, at, wo, u[0]),
-            Self::Measured(measured) => measured.sample(lambda_nm, n, at, wo, [u[1], u[2]]),
-            Self::Principled(surface) => surface.sample(lambda_nm, n, at, wo, u),
-            Self::Blend(blend) => blend.sample(lambda_nm, n, at, wo, u),
-            Self::OneSided(one) => one.sample(lambda_nm, n, at, wo, u),
-            Self::Tinted(tinted) => tinted.sample(lambda_nm, n, at, wo, u),
+            Self::Lambert(lambert) => {
+                lambert.sample(lambda_nm, n, at.texture_point(), wo, [u[1], u[2]]).map(Drawn::Sample)
+            }
+            Self::Mirror(mirror) => mirror.sample(lambda_nm, n, at.texture_point(), wo).map(Drawn::Sample),
+            Self::Conductor(conductor) => {
+                conductor.sample(lambda_nm, n, at.texture_point(), wo, at.media()).map(Drawn::Sample)
+            }
+            Self::Dielectric(dielectric) => {
+                dielectric.sample(lambda_nm, (n, at.uv), wo, u[0], at.media()).map(Drawn::Sample)
+            }
+            Self::RoughConductor(metal) => metal.draw(n, at, wo, u),
+            Self::RoughDielectric(glass) => glass.draw(lambda_nm, n, at, wo, u),
+            Self::OrenNayar(_) => OrenNayar::draw(n, wo, [u[1], u[2]]),
+            Self::Translucent(sheet) => sheet.sample(lambda_nm, n, at.texture_point(), wo, u).map(Drawn::Sample),
+            Self::Plastic(plastic) => plastic.draw(lambda_nm, n, at, wo, u),
+            Self::Fluorescent(surface) => surface.sample(lambda_nm, n, at, wo, [u[1], u[2]]).map(Drawn::Sample),
+            Self::ThinDielectric(pane) => pane.sample(lambda_nm, (n, at.uv), wo, u[0]).map(Drawn::Sample),
+            Self::PolarisingSheet(sheet) => sheet.sample(lambda_nm, wo).map(Drawn::Sample),
+            Self::Grating(grating) => grating.sample(lambda_nm, n, at, wo, u[0]).map(Drawn::Sample),
+            Self::Measured(measured) => measured.draw(n, at, wo, [u[1], u[2]]),
+            Self::Principled(surface) => surface.draw(n, at, wo, u),
+            Self::Blend(blend) => blend.draw(lambda_nm, n, at, wo, u),
+            Self::OneSided(one) => one.draw(lambda_nm, n, at, wo, u),
+            Self::Tinted(tinted) => tinted.draw(lambda_nm, n, at, wo, u),
             Self::Black => None,
         }
     }

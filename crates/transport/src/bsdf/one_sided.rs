@@ -1,6 +1,6 @@
 //! A surface that reflects on one side and is black on the other, as a plain diffuse surface is in Mitsuba.
 
-use super::{Bsdf, BsdfSample, Lobe, Properties, Shading};
+use super::{Bsdf, Drawn, Lobe, Properties, Shading};
 use crate::polarisation::mueller::Matrix;
 use etalon_optics::{Lanes, Vec3};
 use etalon_scene::Side;
@@ -56,15 +56,15 @@ impl OneSided {
         }
     }
 
-    pub(super) fn sample<const N: usize>(
+    pub(super) fn draw<const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<f64>,
         at: &Shading<'_>,
         wo: Vec3<f64>,
         u: [f64; 3],
-    ) -> Option<BsdfSample<N>> {
-        self.is_seen(n, wo).then(|| self.bsdf.sample_around(lambda_nm, n, at, wo, u))?
+    ) -> Option<Drawn<N>> {
+        self.is_seen(n, wo).then(|| self.bsdf.draw_around(lambda_nm, n, at, wo, u))?
     }
 
     pub(super) fn mueller<const N: usize>(

@@ -7,7 +7,7 @@
 
 use super::albedo::{Azimuths, LossTable};
 use super::microfacet::Facing;
-use super::{BsdfSample, Properties};
+use super::{Drawn, Properties};
 use crate::texture::{PathTexture, TexturePoint};
 use crate::warp::cosine_hemisphere;
 use etalon_optics::{Lanes, Vec3};
@@ -65,17 +65,10 @@ impl OrenNayar {
         (f_cos, Lanes::splat(pdf))
     }
 
-    pub(super) fn sample<const N: usize>(
-        &self,
-        lambda_nm: &Lanes<f64, N>,
-        n: Vec3<f64>,
-        place: TexturePoint,
-        wo: Vec3<f64>,
-        u: [f64; 2],
-    ) -> Option<BsdfSample<N>> {
-        let wi = Facing::new(n, wo)?.world(cosine_hemisphere(u));
-        let (f_cos, density) = self.eval(lambda_nm, n, place, wo, wi);
-        BsdfSample::scattered(wi, f_cos, density, 1.0)
+    pub(super) fn draw<const N: usize>(n: Vec3<f64>, wo: Vec3<f64>, u: [f64; 2]) -> Option<Drawn<N>> {
+        let facing = Facing::new(n, wo)?;
+        let wi = facing.world(cosine_hemisphere(u));
+        Drawn::reflected(wi, facing.local(wi).z)
     }
 }
 

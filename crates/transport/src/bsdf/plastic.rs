@@ -16,7 +16,7 @@ use super::glass_losses::{let_by, mean_transmittance};
 use super::microfacet::{Distribution, Facet, Facing, MEAN_ERROR, mean_over_facets};
 use super::mueller::{Lobe, PolarisedLoss};
 use super::table_store::Tabulated;
-use super::{BsdfSample, Properties, Shading};
+use super::{BsdfSample, Drawn, Properties, Shading};
 use crate::mis::Density;
 use crate::polarisation::mueller::{self, Matrix};
 use crate::spectral::PathSpectrum;
@@ -109,7 +109,7 @@ impl Plastic {
         let base = |nm: f64| {
             let index = coat.eval(nm);
             let ground = Ground { n2: index * index, let_out: let_out.eval(nm), internal_reflection };
-            ground.of(reflectance.mean(nm)) * mean_transmittance(index)
+            ground.of(Lanes([reflectance.mean(nm)]))[0] * mean_transmittance(index)
         };
         let ground = steps().map(base).sum::<f64>() / 65.0;
         Self { reflectance, coat, let_out, internal_reflection, rough, tint: None, dispersive, reference, ground }
@@ -197,7 +197,7 @@ impl Plastic {
             });
             let [(t_o, a_o), (t_i, a_i)] =
                 [local_o, local_i].map(|w| (self.transmittance(w, index), self.diattenuation(w, index)));
-            let ground = t_o * t_i * self.ground(nm, index).of(reflectance[lane]) * FRAC_1_PI;
+            let ground = t_o * t_i * self.ground(nm, index).of(Lanes([reflectance[lane]]))[0] * FRAC_1_PI;
             let s = |w: Vec3<f64>| self.rough.as_ref().map_or(n.cross(w), |rough| rough.distribution.s(&facing, n, w));
             mueller::mixed([coat, (ground, super::mueller::forgotten(s, (wo, wi, x), a_o, a_i))])
         }))
@@ -236,27 +236,15 @@ impl Plastic {
         wi: Vec3<f64>,
     ) -> (Lanes<f64, N>, Lanes<f64, N>) {
         let Some(facing) = self.facing(at, n, wo) else { return (Lanes::ZERO, Lanes::ZERO) };
-        self.eval_facing(lambda_nm, at, &facing, self.transmittance(facing.wo, self.reference), wi)
-    }
-
-    /// The same of a coat whose frame is known, and what it lets in along `wo` at its index of reference.
-    fn eval_facing<const N: usize>(
-        &self,
-        lambda_nm: &Lanes<f64, N>,
-        at: &Shading<'_>,
-        facing: &Facing,
-        passed_o: f64,
-        wi: Vec3<f64>,
-    ) -> (Lanes<f64, N>, Lanes<f64, N>) {
         let (wo, wi) = (facing.wo, facing.local(wi));
         if wi.z <= 0.0 {
             return (Lanes::ZERO, Lanes::ZERO);
         }
         let facets = self.rough.as_ref().map(|rough| rough.distribution.reflection(wo, wi));
         let diffuse = wi.z * FRAC_1_PI;
+        let passed_o = self.transmittance(wo, self.reference);
         let reflectance: Lanes<f64, N> = self.reflectance.lanes(lambda_nm, at.texture_point());
-        let left = self.left(lambda_nm, at);
-        // T(µ_o) T(µ_i), what the ground makes of it, and f·|cos θ_i| of the coat's facets without its tint.
+        // T(µ_o) T(µ_i), how the ground answers, and f·|cos θ_i| of the coat's facets without its tint.
         let coat = |nm: f64, index: f64, passed_o: f64| {
             let passed = passed_o * self.transmittance(wi, index);
             let reflected = facets.as_ref().map_or(0.0, |facets| {
@@ -265,18 +253,27 @@ impl Plastic {
             });
             (passed, self.ground(nm, index), reflected)
         };
-        // Without dispersion, the coat does the same in every lane.
-        let of_all = (!self.dispersive).then(|| coat(lambda_nm[0], self.reference, passed_o));
-        let f_cos = Lanes::from_fn(|lane| {
-            let (passed, ground, mut reflected) = of_all.unwrap_or_else(|| {
-                let index = self.coat.eval(lambda_nm[lane]);
-                coat(lambda_nm[lane], index, self.transmittance(wo, index))
-            });
-            if let Some(left) = &left {
-                reflected *= left[lane];
+        let (of_ground, mut of_coat) = match self.dispersive {
+            // The coat does the same in every lane.
+            false => {
+                let (passed, ground, reflected) = coat(lambda_nm[0], self.reference, passed_o);
+                (ground.of(reflectance) * passed * diffuse, Lanes::splat(reflected))
             }
-            passed * ground.of(reflectance[lane]) * diffuse + reflected
-        });
+            true => {
+                let mut of_both = [Lanes::ZERO; 2];
+                for lane in 0..N {
+                    let index = self.coat.eval(lambda_nm[lane]);
+                    let (passed, ground, reflected) = coat(lambda_nm[lane], index, self.transmittance(wo, index));
+                    of_both[0][lane] = passed * ground.of(Lanes([reflectance[lane]]))[0] * diffuse;
+                    of_both[1][lane] = reflected;
+                }
+                (of_both[0], of_both[1])
+            }
+        };
+        if let Some(left) = self.left(lambda_nm, at) {
+            of_coat *= left;
+        }
+        let f_cos = of_ground + of_coat;
         let share = self.coat_share(passed_o);
         let mut density = (1.0 - share) * diffuse;
         if let Some(facets) = &facets {
@@ -285,18 +282,17 @@ impl Plastic {
         (f_cos, Lanes::splat(density))
     }
 
-    pub(super) fn sample<const N: usize>(
+    pub(super) fn draw<const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<f64>,
         at: &Shading<'_>,
         wo: Vec3<f64>,
         u: [f64; 3],
-    ) -> Option<BsdfSample<N>> {
+    ) -> Option<Drawn<N>> {
         let facing = self.facing(at, n, wo)?;
         let [u_lobe, u1, u2] = u;
-        let passed = self.transmittance(facing.wo, self.reference);
-        let share = self.coat_share(passed);
+        let share = self.coat_share(self.transmittance(facing.wo, self.reference));
         let wi = match &self.rough {
             _ if u_lobe >= share => facing.world(cosine_hemisphere([u1, u2])),
             Some(rough) => {
@@ -312,27 +308,21 @@ impl Plastic {
                 if let Some(left) = self.left(lambda_nm, at) {
                     weight *= left;
                 }
-                return Some(BsdfSample {
-                    wi: wo.reflected_about(n).renormalized(),
-                    weight,
-                    density: Density::Delta,
-                    lane_density: Lanes::ONE,
-                    eta: 1.0,
-                });
+                let (wi, density) = (wo.reflected_about(n).renormalized(), Density::Delta);
+                return Some(Drawn::Sample(BsdfSample { wi, weight, density, lane_density: Lanes::ONE, eta: 1.0 }));
             }
         };
-        let (f_cos, density) = self.eval_facing(lambda_nm, at, &facing, passed, wi);
-        BsdfSample::scattered(wi, f_cos, density, 1.0)
+        Drawn::reflected(wi, facing.local(wi).z)
     }
 }
 
 impl Ground {
     /// ρ/(n²(1 − ρ r_i)); where the ground colours light only once, ρ/(n²(1 − r_i)); where that light is lost, ρ.
     #[inline(always)]
-    fn of(self, rho: f64) -> f64 {
+    fn of<const N: usize>(self, rho: Lanes<f64, N>) -> Lanes<f64, N> {
         let Self { n2, let_out, internal_reflection } = self;
         match internal_reflection {
-            InternalReflection::Coloured => rho / (n2 * (1.0 - rho * (1.0 - let_out))),
+            InternalReflection::Coloured => rho / ((Lanes::ONE - rho * (1.0 - let_out)) * n2),
             InternalReflection::Uncoloured => rho / (n2 * let_out),
             InternalReflection::Lost => rho,
         }

@@ -24,7 +24,7 @@
 
 use super::clear_coat::ClearCoat;
 use super::microfacet::{Distribution, Facing};
-use super::{BsdfSample, Properties, Shading};
+use super::{Drawn, Properties, Shading};
 use crate::texture::{PathTexture, TexturePoint};
 use crate::warp::cosine_hemisphere;
 use etalon_optics::colour::rec709_luminance;
@@ -186,14 +186,13 @@ impl Principled {
         burley + self.lobes.flatness * (flat - burley)
     }
 
-    pub(super) fn sample<const N: usize>(
+    pub(super) fn draw<const N: usize>(
         &self,
-        lambda_nm: &Lanes<f64, N>,
         n: Vec3<f64>,
         at: &Shading<'_>,
         wo: Vec3<f64>,
         u: [f64; 3],
-    ) -> Option<BsdfSample<N>> {
+    ) -> Option<Drawn<N>> {
         let facing: Facing = self.distribution.facing(at, n, wo)?;
         let [u_lobe, u1, u2] = u;
         let probabilities = self.probabilities(facing.wo.z.min(1.0));
@@ -203,9 +202,7 @@ impl Principled {
             _ => facing.wo.reflected_about(self.distribution.visible_normal(facing.wo, [u1, u2])),
         };
         let wi = facing.world(wi);
-        // Of the direction as it came out, rounding included: below the surface the light is lost.
-        let (f_cos, density) = self.seen(lambda_nm, at, facing.wo, facing.local(wi))?;
-        BsdfSample::scattered(wi, f_cos, Lanes::splat(density), 1.0)
+        Drawn::reflected(wi, facing.local(wi).z)
     }
 }
 

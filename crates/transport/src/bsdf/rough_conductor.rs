@@ -9,7 +9,7 @@ use super::film::PathFilm;
 use super::metal::{OfMetal, PathMetal};
 use super::microfacet::{Distribution, MEAN_ERROR, gauss_rule, mean_over_facets};
 use super::table_store::Tabulated;
-use super::{BsdfSample, Properties, Shading};
+use super::{Drawn, Properties, Shading};
 use crate::polarisation::mueller::{self, Matrix};
 use etalon_optics::fresnel::Amplitudes;
 use etalon_optics::{Complex, Lanes, Vec3, fresnel};
@@ -120,13 +120,15 @@ impl RoughConductor {
         let loss = self.loss(wo);
         let several = loss * self.loss(wi);
         let index = self.metal.lanes(lambda_nm, at.texture_point());
-        let f_cos = Lanes::from_fn(|lane| {
-            let mut f = self.reflectance(lambda_nm[lane], single.cos, index[lane], at.uv) * single.term;
-            if let Some(compensation) = &self.compensation {
-                f += several * self.several(compensation, lambda_nm[lane], index[lane], at.uv);
-            }
-            f * wi.z
-        });
+        let mut f = match &self.film {
+            // All lanes at once.
+            None => Lanes::from_fn(|lane| fresnel::conductor(single.cos, index[lane].0, index[lane].1).reflectance),
+            Some(_) => Lanes::from_fn(|lane| self.reflectance(lambda_nm[lane], single.cos, index[lane], at.uv)),
+        } * single.term;
+        if let Some(compensation) = &self.compensation {
+            f += Lanes::from_fn(|lane| several * self.several(compensation, lambda_nm[lane], index[lane], at.uv));
+        }
+        let f_cos = f * wi.z;
         let diffuse = self.compensation.as_ref().map_or(0.0, |c| c.loss.density(wi.z));
         let density = (1.0 - loss) * single.density + loss * diffuse;
         (f_cos, Lanes::splat(density))
@@ -161,14 +163,13 @@ impl RoughConductor {
         }))
     }
 
-    pub(super) fn sample<const N: usize>(
+    pub(super) fn draw<const N: usize>(
         &self,
-        lambda_nm: &Lanes<f64, N>,
         n: Vec3<f64>,
         at: &Shading<'_>,
         wo: Vec3<f64>,
         u: [f64; 3],
-    ) -> Option<BsdfSample<N>> {
+    ) -> Option<Drawn<N>> {
         let facing = self.distribution.facing(at, n, wo)?;
         let [u_lobe, u1, u2] = u;
         let wi = match &self.compensation {
@@ -176,9 +177,7 @@ impl RoughConductor {
             _ => facing.wo.reflected_about(self.distribution.visible_normal(facing.wo, [u1, u2])),
         };
         let wi = facing.world(wi);
-        // Of the direction as it came out, rounding included: below the surface the light is lost.
-        let (f_cos, density) = self.eval(lambda_nm, n, at, wo, wi);
-        BsdfSample::scattered(wi, f_cos, density, 1.0)
+        Drawn::reflected(wi, facing.local(wi).z)
     }
 }
 

@@ -17,7 +17,7 @@
 use super::film::{PathFilm, PowerShares};
 use super::microfacet::Distribution;
 use super::rough_boundary::Boundary;
-use super::{BsdfSample, Properties, Shading};
+use super::{BsdfSample, Drawn, Properties, Shading};
 use crate::media::Interface;
 use crate::mis::Density;
 use crate::polarisation::mueller::{self, Matrix};
@@ -284,16 +284,17 @@ impl RoughDielectric {
         (Lanes::from_fn(|lane| both[lane].0), Lanes::from_fn(|lane| both[lane].1))
     }
 
-    pub(super) fn sample<const N: usize>(
+    pub(super) fn draw<const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<f64>,
         at: &Shading<'_>,
         wo: Vec3<f64>,
         u: [f64; 3],
-    ) -> Option<BsdfSample<N>> {
+    ) -> Option<Drawn<N>> {
         let straight_on = |lanes: Lanes<f64, N>| {
-            Some(BsdfSample { wi: -wo, weight: lanes, density: Density::Delta, lane_density: lanes, eta: 1.0 })
+            let (wi, density) = (-wo, Density::Delta);
+            Some(Drawn::Sample(BsdfSample { wi, weight: lanes, density, lane_density: lanes, eta: 1.0 }))
         };
         let Some((boundary, from_outside)) = self.boundary(at.media(), n.dot(wo) > 0.0) else {
             return straight_on(Lanes::ONE);
@@ -344,7 +345,6 @@ impl RoughDielectric {
         if (facing.local(wi).z < 0.0) != crossed {
             return None;
         }
-        let (f_cos, density) = self.eval(lambda_nm, n, at, wo, wi);
-        BsdfSample::scattered(wi, f_cos, density, if crossed { eta } else { 1.0 })
+        Some(Drawn::Direction(wi, if crossed { eta } else { 1.0 }))
     }
 }

@@ -31,12 +31,13 @@
 //!   normals, at most 1 (Estevez, Lecocq & Stein 2019, *A Microfacet-Based Shadowing Function to Solve the Bump Terminator Problem*).
 //! - What goes straight through a pane is neither lost nor dimmed.
 
-use super::{Bsdf, BsdfSample};
+use super::{Bsdf, BsdfSample, Drawn};
 use crate::media::Interface;
 use crate::mis::Density;
 use crate::texture::TexturePoint;
 use etalon_optics::{Frame, Lanes, Vec3};
 use etalon_scene::Terminator;
+use std::borrow::Cow;
 
 /// A surface point as scattering sees it.
 #[derive(Clone, Copy, Debug)]
@@ -199,8 +200,9 @@ impl<'a> Shading<'a> {
     }
 
     /// The same as a viewer on its own side of the horizon sees it: no map that loses light changes the viewer's side.
-    pub(super) fn seen_by(self, viewer: Vec3<f64>) -> Self {
-        if self.changes_side(viewer) { self.turned() } else { self }
+    #[inline]
+    pub(super) fn seen_by(&self, viewer: Vec3<f64>) -> Cow<'_, Self> {
+        if self.changes_side(viewer) { Cow::Owned(self.turned()) } else { Cow::Borrowed(self) }
     }
 
     /// The same with the normal of a map that loses light turned by half a turn about the one before.
@@ -241,7 +243,7 @@ pub(super) fn eval<const N: usize>(
     wi: Vec3<f64>,
 ) -> (Lanes<f64, N>, Lanes<f64, N>) {
     let viewer = at.viewer(wo);
-    let at = &at.seen_by(viewer);
+    let at = &*at.seen_by(viewer);
     let n = at.shading_normal();
     let mut sum = (Lanes::ZERO, Lanes::ZERO);
     for direction in [wi, at.mirrored(wi)] {
@@ -268,27 +270,29 @@ pub(super) fn sample<const N: usize>(
     u: [f64; 3],
 ) -> Option<BsdfSample<N>> {
     let viewer = at.viewer(wo);
-    let at = &at.seen_by(viewer);
+    let at = &*at.seen_by(viewer);
     let n = at.shading_normal();
-    let mut next = bsdf.sample_around(lambda_nm, n, at, viewer, u)?;
-    let left = at.share_left_by(bsdf, viewer, next.wi);
+    let drawn = bsdf.draw_around(lambda_nm, n, at, viewer, u)?;
+    let meant = drawn.wi();
+    let left = at.share_left_by(bsdf, viewer, meant);
     if left == 0.0 {
         return None;
     }
     // The side that the BSDF meant is the one that the triangle gives it.
-    if at.normal.dot(next.wi) * n.dot(next.wi) < 0.0 {
-        next.wi = at.mirrored(next.wi);
-    }
-    if at.normal.dot(next.wi) == 0.0 {
+    let wi = if at.normal.dot(meant) * n.dot(meant) < 0.0 { at.mirrored(meant) } else { meant };
+    if at.normal.dot(wi) == 0.0 {
         return None;
     }
-    if let Density::SolidAngle(_) = next.density {
-        // Both directions that this one may stand for.
-        let (f_cos, density) = eval(bsdf, lambda_nm, at, wo, next.wi);
-        return BsdfSample::scattered(next.wi, f_cos, density, next.eta);
+    match drawn {
+        Drawn::Sample(sample @ BsdfSample { density: Density::Delta, .. }) => {
+            Some(BsdfSample { wi, weight: sample.weight * left, ..sample })
+        }
+        Drawn::Sample(BsdfSample { eta, .. }) | Drawn::Direction(_, eta) => {
+            // Both directions that this one may stand for.
+            let (f_cos, density) = eval(bsdf, lambda_nm, at, wo, wi);
+            BsdfSample::scattered(wi, f_cos, density, eta)
+        }
     }
-    next.weight *= left;
-    Some(next)
 }
 
 /// [`Bsdf::sample_viewer`] around a bent normal.
@@ -310,8 +314,11 @@ pub(super) fn sample_viewer<const N: usize>(
     // Around the normal that such a viewer sees.
     let back = |n: Vec3<f64>| {
         let around = Shading { bent: Some(n), ..*at };
-        let seen = bsdf.sample_around(lambda_nm, n, &around, meant, u)?;
-        debug_assert!(matches!(seen.density, Density::Delta), "smooth surfaces have one way back");
+        let Drawn::Sample(seen @ BsdfSample { density: Density::Delta, .. }) =
+            bsdf.draw_around(lambda_nm, n, &around, meant, u)?
+        else {
+            unreachable!("smooth surfaces have one way back");
+        };
         (at.seen_by(seen.wi).shading_normal() == n).then_some((seen, n))
     };
     let turned = at.unmapped.map(|_| at.turned().shading_normal());

@@ -3,7 +3,7 @@
 //!
 //! With factors of at most 1 it gains no energy, and what was reciprocal stays so: light crosses it either way by the same factor.
 
-use super::{Bsdf, BsdfSample, Lobe, Properties, Shading};
+use super::{Bsdf, BsdfSample, Drawn, Lobe, Properties, Shading};
 use crate::polarisation::mueller::Matrix;
 use crate::texture::PathTexture;
 use etalon_optics::{Lanes, Vec3};
@@ -61,17 +61,21 @@ impl Tinted {
         (f_cos * self.tint(lambda_nm, n, at, (wo, wi)), density)
     }
 
-    pub(super) fn sample<const N: usize>(
+    pub(super) fn draw<const N: usize>(
         &self,
         lambda_nm: &Lanes<f64, N>,
         n: Vec3<f64>,
         at: &Shading<'_>,
         wo: Vec3<f64>,
         u: [f64; 3],
-    ) -> Option<BsdfSample<N>> {
-        let sample = self.bsdf.sample_around(lambda_nm, n, at, wo, u)?;
-        let weight = sample.weight * self.tint(lambda_nm, n, at, (wo, sample.wi));
-        Some(BsdfSample { weight, ..sample })
+    ) -> Option<Drawn<N>> {
+        Some(match self.bsdf.draw_around(lambda_nm, n, at, wo, u)? {
+            Drawn::Sample(sample) => {
+                let weight = sample.weight * self.tint(lambda_nm, n, at, (wo, sample.wi));
+                Drawn::Sample(BsdfSample { weight, ..sample })
+            }
+            drawn @ Drawn::Direction(..) => drawn,
+        })
     }
 
     pub(super) fn mueller<const N: usize>(

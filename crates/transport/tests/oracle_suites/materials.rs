@@ -165,6 +165,11 @@ fn mixture() -> Material {
     Material::new(MaterialKind::blend(first, second, 0.3))
 }
 
+/// Where rough metal loses light below the surface, the leaf shows the light that it passes.
+fn rough_silver_before_a_leaf() -> Material {
+    Material::new(MaterialKind::blend(rough_metal("Ag", 1.0, false).kind, leaf().kind, 0.5))
+}
+
 /// An image of one texel.
 fn texel(rgb: [f32; 3]) -> ImageTexture {
     ImageTexture::new(Image::new(1, 1, Texels::F32(vec![rgb])))
@@ -249,6 +254,7 @@ fn polariser() -> Material {
 
 scatters_suite!(polariser, polariser());
 scatters_suite!(mirror_and_clay, mixture());
+scatters_suite!(rough_silver_before_a_leaf, rough_silver_before_a_leaf());
 
 /// Facets of two widths, turned.
 fn brushed(u: f64, v: f64) -> Microfacets {
