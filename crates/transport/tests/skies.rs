@@ -53,7 +53,7 @@ impl Emits for Sky {
     }
 
     fn pdf(&self, _: [f64; 3], wi: [f64; 3]) -> f64 {
-        self.light.look(Vec3::from_array(wi)).density
+        self.light.look(Vec3::from_array(wi)).brightness.density
     }
 
     fn radiance(&self, _: [f64; 3], wi: [f64; 3]) -> f64 {
@@ -82,7 +82,7 @@ fn standard_skies_are_one_at_the_zenith_and_shine_everywhere_above_the_horizon()
             let wi = etalon_transport::warp::uniform_sphere([u, v]);
             let look = light.look(wi);
             if wi.dot(up) >= 0.0 {
-                assert!(look.relative > 0.0 && look.density > 0.0, "{number}: {wi:?} {look:?}");
+                assert!(look.relative > 0.0 && look.brightness.density > 0.0, "{number}: {wi:?} {look:?}");
             } else {
                 assert_eq!(look.relative, 0.0, "{number}: {wi:?}");
             }

@@ -5,7 +5,7 @@ use super::path::{Since, Step, Through};
 use crate::film::Counters;
 use crate::integrator::observer::{Found, Observer};
 use crate::integrator::wavelength_lanes::WavelengthModel;
-use crate::light::{Environment, EnvironmentRadiance, Light, Look, SkyLook};
+use crate::light::{Brightness, Environment, EnvironmentRadiance, Light, Look};
 use crate::mis::Heuristic;
 use crate::polarisation::Polarisation;
 use crate::scene::interaction::SurfaceInteraction;
@@ -28,20 +28,21 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         observer: &mut impl Observer<N>,
     ) {
         for (environment, slot) in world.environments.iter().zip(&world.tables.environments) {
-            if environment.light.is_some() && self.is_light_traced(world) {
-                continue;
-            }
             counters.environment_lookups += 1;
-            let (radiance, density) = self.radiance_from(world, environment, *slot, ray, &mut sky);
-            let mis = match density {
+            let (radiance, seen) = self.radiance_from(world, environment, *slot, ray, &mut sky);
+            let mis = match seen {
                 None => 1.0,
-                Some(density) => self.weight_of_hit(world, ray, None, || environment.light, |_, _| density),
+                // No shadow ray aims at what light paths leave.
+                Some(seen) if environment.light.is_some() && self.is_light_traced(world) => {
+                    1.0 - environment.radiance.bright_share(seen)
+                }
+                Some(seen) => self.weight_of_hit(world, ray, None, || environment.light, |_, _| seen.density),
             };
             self.add(observer, Found::Environment, radiance, mis);
         }
     }
 
-    /// What a sky shows along a ray, and the density with which shadow rays take its direction, if they do.
+    /// What a sky shows along a ray, and how bright that is to shadow rays, if they aim at it.
     #[inline(always)]
     fn radiance_from(
         &mut self,
@@ -50,17 +51,17 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         slot: Slot,
         ray: &Ray<f64>,
         sky: &mut Option<Look>,
-    ) -> (Lanes<f64, N>, Option<f64>) {
+    ) -> (Lanes<f64, N>, Option<Brightness>) {
         let white = self.spectra.of(slot, environment.radiance.spectrum(), world.tables, &self.wavelengths);
         match &environment.radiance {
             EnvironmentRadiance::Uniform(_) => (white, None),
             EnvironmentRadiance::Image(image) => {
-                let Look { colour, density } = sky.take().unwrap_or_else(|| image.look(ray.direction));
-                (self.coloured(white, Some(Colour::Rgb(colour))), Some(density))
+                let look = sky.take().unwrap_or_else(|| image.look(ray.direction));
+                (self.coloured(white, Some(Colour::Rgb(look.colour))), Some(look.brightness()))
             }
             EnvironmentRadiance::Sky(of) => {
-                let SkyLook { relative, colour, density } = of.look(ray.direction);
-                (self.coloured(white, colour) * relative, Some(density))
+                let look = of.look(ray.direction);
+                (self.coloured(white, look.colour) * look.relative, Some(look.brightness))
             }
         }
     }

@@ -361,7 +361,7 @@ impl<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Path<'a, M, 
         }
     }
 
-    /// Whether light paths bring the light of a lamp, or of a sky that shadow rays aim at, which it has met.
+    /// Whether light paths bring the light of a lamp, or the bright share of a sky that shadow rays aim at, which it has met.
     #[inline(always)]
     pub(super) fn is_light_traced(&self, world: &World<'a>) -> bool {
         world.specular_objects.is_some() && self.light_traced == LightTraced::Now

@@ -9,9 +9,11 @@ use super::{LightSample, LightSampling, LightSource, Target};
 use crate::mis::Density;
 use crate::spectral::{Colour, PathSpectrum};
 pub(super) use above_mean::AboveMean;
+pub use above_mean::Brightness;
 use equal_area::EqualArea;
 use etalon_geometry::SurfaceId;
 use etalon_optics::Vec3;
+use etalon_optics::colour::rec709_luminance;
 use etalon_scene::{EnvironmentImage, EnvironmentProjection, Image};
 use meridians::Meridians;
 use std::f64::consts::PI;
@@ -84,7 +86,7 @@ impl EnvironmentLight {
     }
 
     /// What of the luminance shadow rays are drawn by.
-    fn above(&self) -> &AboveMean {
+    pub(super) fn above(&self) -> &AboveMean {
         match &self.map {
             Map::Meridians(map) => map.above(),
             Map::EqualArea(map) => map.above(),
@@ -132,6 +134,12 @@ impl EnvironmentLight {
 impl Look {
     pub(crate) const BLACK: Self = Self { colour: [0.0; 3], density: 0.0 };
 
+    /// How bright it is to shadow rays.
+    #[inline(always)]
+    pub(crate) fn brightness(&self) -> Brightness {
+        Brightness { density: self.density, luminance: rec709_luminance(self.colour) }
+    }
+
     /// The sample of a direction in which the image shows this; `None` where it is black.
     #[inline(always)]
     pub(crate) fn sample(self, wi: Vec3<f64>) -> Option<LightSample> {
@@ -152,14 +160,12 @@ impl LightSource for EnvironmentLight {
         look.sample(wi)
     }
 
-    fn sample_all(&self, _from: Vec3<f64>, u: [f64; 2], _time: f64) -> Option<LightSample> {
-        let wi = self.above().draw_all(u, |[u, v]| self.sample_row([&[u], &[v]]).0[0]);
-        let Look { colour, density } = self.look(wi);
-        Look { colour, density: self.above().density_of_all(density) }.sample(wi)
-    }
-
     fn density(&self, _from: Vec3<f64>, wi: Vec3<f64>, _time: f64) -> f64 {
         self.look(wi).density
+    }
+
+    fn bright_share(&self, wi: Vec3<f64>) -> f64 {
+        self.above().share(self.look(wi).brightness())
     }
 
     /// That of its white.

@@ -21,7 +21,7 @@ mod tree;
 pub use area::{AreaLight, Emitter, ImageOf};
 pub use beam::BeamLight;
 pub use directional::DirectionalLight;
-pub use environment::{EnvironmentLight, Look};
+pub use environment::{Brightness, EnvironmentLight, Look};
 pub use luminaire::LuminaireLight;
 pub use moving::MovingLight;
 pub use point::PointLight;
@@ -120,8 +120,9 @@ impl Source {
 trait LightSource {
     fn sample(&self, from: Vec3<f64>, u: [f64; 2], time: f64) -> Option<LightSample>;
 
-    fn sample_all(&self, from: Vec3<f64>, u: [f64; 2], time: f64) -> Option<LightSample> {
-        self.sample(from, u, time)
+    /// Less than 1 only of skies.
+    fn bright_share(&self, _wi: Vec3<f64>) -> f64 {
+        1.0
     }
 
     /// 0 of a light whose position or direction is a single one.
@@ -228,9 +229,10 @@ impl Light {
         each!(self, light => LightSource::sample(light, from, u, time))
     }
 
-    /// The same, but finds all light of skies, too. Their density is then not that of [`Light::density`].
-    pub fn sample_all(&self, from: Vec3<f64>, u: [f64; 2], time: f64) -> Option<LightSample> {
-        each!(self, light => LightSource::sample_all(light, from, u, time))
+    /// The share of its light from the direction `wi` by which [`Light::sample`] draws directions: of a sky what is above the mean, as its cells
+    /// interpolate that; of other lights all.
+    pub fn bright_share(&self, wi: Vec3<f64>) -> f64 {
+        each!(self, light => LightSource::bright_share(light, wi))
     }
 
     /// The density in sr⁻¹ with which [`Light::sample`] draws the direction `wi`, which meets the light at that time, from `from`.
@@ -395,6 +397,15 @@ impl EnvironmentRadiance {
         match self {
             Self::Image(light) => Some(light),
             Self::Uniform(_) | Self::Sky(_) => None,
+        }
+    }
+
+    /// [`Light::bright_share`] of a direction in which it is so bright.
+    pub(crate) fn bright_share(&self, seen: Brightness) -> f64 {
+        match self {
+            Self::Uniform(_) => 1.0,
+            Self::Image(light) => light.above().share(seen),
+            Self::Sky(light) => light.above().share(seen),
         }
     }
 

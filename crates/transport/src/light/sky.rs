@@ -3,8 +3,8 @@
 //! The table has a row at the zenith and one at the horizon, and is interpolated as an image of everything around is. It gives the density
 //! of directions and no light, so its coarseness costs noise alone. As of images, shadow rays aim at what is brighter than the mean.
 
-use super::environment::Along;
 use super::environment::meridians::Meridians;
+use super::environment::{AboveMean, Along, Brightness};
 use super::{LightSample, LightSampling, LightSource, Target};
 use crate::mis::Density;
 use crate::spectral::{Colour, PathSpectrum};
@@ -99,8 +99,8 @@ pub struct SkyLook {
     pub relative: f64,
     /// Its colour, where it is not everywhere the same.
     pub colour: Option<Colour>,
-    /// The density in sr⁻¹ with which shadow rays are drawn in this direction.
-    pub density: f64,
+    /// How bright it is to shadow rays.
+    pub brightness: Brightness,
 }
 
 impl SkyLight {
@@ -142,8 +142,13 @@ impl SkyLight {
     pub fn look(&self, wi: Vec3<f64>) -> SkyLook {
         let along = Along { forward: wi.dot(self.axes.s), right: wi.dot(self.axes.t), up: wi.dot(self.axes.n) };
         let [look] = self.map.look(&self.table, &[along]);
-        let Shown { relative, colour, .. } = self.pattern.eval(wi);
-        SkyLook { relative, colour, density: look.density }
+        let Shown { relative, colour, luminance } = self.pattern.eval(wi);
+        SkyLook { relative, colour, brightness: Brightness { density: look.density, luminance } }
+    }
+
+    /// What of the luminance shadow rays are drawn by.
+    pub(super) fn above(&self) -> &AboveMean {
+        self.map.above()
     }
 
     /// The direction that `u` in [0, 1)² draws.
@@ -160,7 +165,7 @@ fn world(axes: &Frame<f64>, along: Along) -> Vec3<f64> {
 impl SkyLook {
     /// The sample of a direction in which a sky shows this. The interpolated table reaches below the horizon, where there may be no light.
     fn sample(self, wi: Vec3<f64>) -> Option<LightSample> {
-        let Self { relative, colour, density } = self;
+        let Self { relative, colour, brightness: Brightness { density, .. } } = self;
         (density > 0.0 && relative > 0.0).then_some(LightSample {
             colour,
             wi,
@@ -178,14 +183,12 @@ impl LightSource for SkyLight {
         self.look(wi).sample(wi)
     }
 
-    fn sample_all(&self, _from: Vec3<f64>, u: [f64; 2], _time: f64) -> Option<LightSample> {
-        let wi = self.map.above().draw_all(u, |u| self.direction(u));
-        let look = self.look(wi);
-        SkyLook { density: self.map.above().density_of_all(look.density), ..look }.sample(wi)
+    fn density(&self, _from: Vec3<f64>, wi: Vec3<f64>, _time: f64) -> f64 {
+        self.look(wi).brightness.density
     }
 
-    fn density(&self, _from: Vec3<f64>, wi: Vec3<f64>, _time: f64) -> f64 {
-        self.look(wi).density
+    fn bright_share(&self, wi: Vec3<f64>) -> f64 {
+        self.above().share(self.look(wi).brightness)
     }
 
     /// That of the zenith, of daylight its mean.
@@ -198,6 +201,6 @@ impl LightSource for SkyLight {
     }
 
     fn power_factor(&self, scene_radius: f64) -> f64 {
-        self.map.above().whole * PI * scene_radius * scene_radius
+        self.above().whole * PI * scene_radius * scene_radius
     }
 }

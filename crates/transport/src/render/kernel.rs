@@ -3,6 +3,7 @@
 use crate::batch::render_batch;
 use crate::film::{Counters, PixelRect, Sums};
 use crate::guiding::{NO_TARGETS, SpecularObjects};
+use crate::integrator::Path;
 use crate::integrator::connection_trial::{ConnectionTrial, try_connections};
 use crate::integrator::film_entry::{FilmEntry, SampleId};
 use crate::integrator::light_choice_trial::{LightChoiceTrial, try_light_choice};
@@ -116,8 +117,9 @@ fn trace_light_paths<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
     tracer.seed = seed;
     // A direction toward what throws light is of no use to light itself.
     tracer.world.guided_targets = &NO_TARGETS;
+    let mut path = Path::<M, P, N>::idle();
     for number in numbers {
-        trace_light_path::<M, P, N>(&tracer, specular_objects, (number, of), of_sample, counters, put);
+        trace_light_path(&tracer, &mut path, specular_objects, (number, of), of_sample, counters, put);
     }
 }
 

@@ -7,6 +7,7 @@ use crate::integrator::tracer::Tracer;
 use crate::integrator::wavelength_lanes::WavelengthModel;
 use crate::integrator::{Direction, MOST_VERTICES, Path, Start};
 use crate::light::{LightSample, Target};
+use crate::media::MediumStack;
 use crate::mis::Density;
 use crate::polarisation::Polarisation;
 use crate::sampler::Sampler;
@@ -34,9 +35,10 @@ struct Beginning<'a, const N: usize> {
     power: Lanes<f64, N>,
 }
 
-/// Follows light path number `number` of the `of` of a sample. What it brings to the pixels of a rectangle is given to `put`.
+/// Follows light path number `number` of the `of` of a sample, in the place of `path`. What it brings to the pixels of a rectangle is given to `put`.
 pub(crate) fn trace_light_path<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
     tracer: &Tracer<'a>,
+    path: &mut Path<'a, M, P, N>,
     specular_objects: &SpecularObjects,
     (number, of): (u64, u64),
     (sample, rect): (u32, PixelRect),
@@ -46,13 +48,14 @@ pub(crate) fn trace_light_path<'a, M: WavelengthModel<N>, P: Polarisation<N>, co
     let (world, integrator) = (&tracer.world, &tracer.prepared.scene.integrator);
     let sampler = Sampler::new(integrator.sampler, tracer.seed, LIGHT_PATHS | number, sample, integrator.replicates);
     let [u_wavelength, ..] = sampler.set(1);
-    let mut path = Path::<M, P, N>::idle();
     let wavelengths = M::wavelengths_of_light(tracer.prepared, u_wavelength);
     let (ray, right) = (Ray::free(Vec3::ZERO, Vec3::new(0.0, 0.0, 1.0)), Vec3::new(1.0, 0.0, 0.0));
     let polarisation = P::at_camera(ray.direction, right);
-    path.begin(world, &Start { ray, stack: None, wavelengths, polarisation, weight: 1.0, hero_only: false });
-    let Some(Beginning { mut vertex, power }) =
-        begin(tracer, specular_objects, &mut path, (number, of), &sampler, counters)
+    path.begin(
+        world,
+        &Start { ray, stack: Some(MediumStack::NOTHING), wavelengths, polarisation, weight: 1.0, hero_only: false },
+    );
+    let Some(Beginning { mut vertex, power }) = begin(tracer, specular_objects, path, (number, of), &sampler, counters)
     else {
         return;
     };
@@ -62,7 +65,7 @@ pub(crate) fn trace_light_path<'a, M: WavelengthModel<N>, P: Polarisation<N>, co
         // Straight from the lamp, shadow rays of camera paths find it.
         lights |= !is_specular;
         if lights
-            && let Some(connection) = connect(tracer, &mut path, &vertex, (power / of as f64, rect), &sampler, counters)
+            && let Some(connection) = connect(tracer, path, &vertex, (power / of as f64, rect), &sampler, counters)
         {
             put(connection);
         }
@@ -71,8 +74,8 @@ pub(crate) fn trace_light_path<'a, M: WavelengthModel<N>, P: Polarisation<N>, co
         }
         let [u_lobe, u1, u2, u_roulette] = sampler.vertex_set(path.vertex, 0);
         let u = [u_lobe, u1, u2];
-        let Some(direction) = sample_direction(tracer, &mut path, &vertex, (is_specular, u), &sampler) else { return };
-        let Some(wi) = step(tracer, &mut path, &vertex, direction, (is_specular, u_lobe)) else { return };
+        let Some(direction) = sample_direction(tracer, path, &vertex, (is_specular, u), &sampler) else { return };
+        let Some(wi) = step(tracer, path, &vertex, direction, (is_specular, u_lobe)) else { return };
         // From the lamp to each vertex, to the next, and to the camera.
         if path.edges(3) > world.max_depth {
             return;
@@ -99,20 +102,20 @@ fn begin<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
 ) -> Option<Beginning<'a, N>> {
     let world = &tracer.world;
     let [u1, u2, u_place, u_light] = sampler.set(0);
-    // The paths of a sample are spread evenly over the area.
+    // The paths of a sample are spread evenly over the area, or over what was learned of it.
     let u_place = (path_number as f64 + u_place) / of as f64;
-    let (surface, position) = specular_objects.point(world.geometry, u_place, [u1, u2])?;
+    let (surface, position, area) = specular_objects.point(world.geometry, u_place, [u1, u2])?;
     let hit = Hit { t: 0.0, surface, uv: world.geometry.parameters(surface, position, 0.0) };
     let point = world.geometry.surface(&Ray::free(position, Vec3::new(0.0, 0.0, 1.0)), &hit);
 
-    // As a shadow ray finds it, but all of it: camera paths leave the faint parts of skies to light paths, too.
+    // As a shadow ray finds it. The faint part of a sky is left to camera paths.
     let [_, light_1, light_2, _] = sampler.vertex_set(0, 1);
     let (number, probability) = world.lights.choose(point.position, u_light)?;
     let light = &world.lights.lights()[number];
     if light.source().is_some() && !specular_objects.finds_sources {
         return None;
     }
-    let sample = light.sample_all(point.position, [light_1, light_2], point.time)?;
+    let sample = light.sample(point.position, [light_1, light_2], point.time)?;
     let LightSample { wi: toward_lamp, density, scale, target, colour, .. } = sample;
     let mut vertex = SurfaceInteraction::new(-toward_lamp, hit, point, world.surfaces.of(&point));
     path.visibility(world, &vertex, &sample, counters)?;
@@ -123,7 +126,8 @@ fn begin<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
     let cos = point.normal.dot(toward_lamp).abs();
     let colour = colour.or_else(|| world.colour_of_emitter(number as u32, target, point.time));
     let white = path.spectrum_of_light(world, number as u32);
-    let power = path.coloured(white, colour) * (scale * cos * specular_objects.area() / (density * probability));
+    let scale = scale * light.bright_share(toward_lamp);
+    let power = path.coloured(white, colour) * (scale * cos * area / (density * probability));
     vertex.prepare_scattering(world);
     Some(Beginning { vertex, power })
 }

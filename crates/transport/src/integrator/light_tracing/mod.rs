@@ -7,10 +7,12 @@
 //! **Which light.** Exactly the paths of the form camera – scattering surface – … – specular objects – lamp. The specular objects are mirrors or smooth interfaces of
 //! certain objects, one or more next to the lamp. Between the first surface and those the path may scatter, and be reflected or refracted by specular objects.
 //! All else is left to camera paths, which drop what they find of this form ([`LightTraced`](super::path::LightTraced)). So the two need no weights
-//! against each other.
+//! against each other. Only a sky is divided: light paths bring the share of it that is above its mean, and camera paths the faint rest, which they find
+//! well.
 //!
-//! **One light path** ([`trace_light_path`]). It begins at the specular object that is next to the lamp. Its first point is uniform on the area of all
-//! specular objects, and a shadow ray looks for a lamp from there, as from any vertex. So every kind of lamp works. Then the path goes on, away from the
+//! **One light path** ([`trace_light_path`]). It begins at the specular object that is next to the lamp. Its first point is on the area of all
+//! specular objects: anywhere, or more often where light paths of a [trial] have brought much. A shadow ray looks for a lamp from there, as from any
+//! vertex. So every kind of lamp works. Then the path goes on, away from the
 //! lamp. From the first surface on that is no specular object, each vertex is connected to a point on the lens.
 //!
 //! **The film.** A sample of the picture has a fixed number of light paths, from an eighth to eight for each pixel. What they bring to a pixel is added

@@ -6,8 +6,6 @@
 //! density is 0, and what a path runs into there has the MIS weight 1: the sum stays the same.
 
 use crate::light::LightSampling;
-use etalon_geometry::warp::uniform_sphere;
-use etalon_optics::{Real, Vec3};
 use std::f64::consts::PI;
 
 /// Below this share of the light a sky is as good as constant, and the luminance itself is drawn from.
@@ -50,29 +48,18 @@ impl AboveMean {
         part / self.part
     }
 
-    /// The share of directions that are drawn evenly where all of the sky is to be reached. The density is then proportional to the larger of the
-    /// luminance and its mean, up to how the luminance is interpolated.
-    fn even_share(&self) -> f64 {
-        if self.floor == 0.0 { 0.0 } else { self.whole / (self.whole + self.part) }
+    /// The share of the light from a direction that is the part, as the density interpolates it.
+    pub(in crate::light) fn share(&self, Brightness { density, luminance }: Brightness) -> f64 {
+        // Within a cell the density is interpolated otherwise than the luminance.
+        if density > 0.0 { (density * self.part / luminance).min(1.0) } else { 0.0 }
     }
+}
 
-    /// The direction that `u` in [0, 1)² draws to reach all of the sky. `toward_part` draws one toward the part.
-    pub(in crate::light) fn draw_all(
-        &self,
-        [u, v]: [f64; 2],
-        toward_part: impl FnOnce([f64; 2]) -> Vec3<f64>,
-    ) -> Vec3<f64> {
-        let share = self.even_share();
-        match u < share {
-            true => uniform_sphere([u / share, v]),
-            // Rounding may reach 1.
-            false => toward_part([((u - share) / (1.0 - share)).min(f64::ONE_MINUS_EPSILON), v]),
-        }
-    }
-
-    /// The density of [`AboveMean::draw_all`] in a direction, sr⁻¹, where `toward_part` has `density`.
-    pub(in crate::light) fn density_of_all(&self, density: f64) -> f64 {
-        let share = self.even_share();
-        share / (4.0 * PI) + (1.0 - share) * density
-    }
+/// How bright a sky is in a direction, to shadow rays.
+#[derive(Clone, Copy, Debug)]
+pub struct Brightness {
+    /// The density with which they are drawn in this direction, sr⁻¹.
+    pub density: f64,
+    /// Its luminance, to the scale of the sky's.
+    pub luminance: f64,
 }
