@@ -77,7 +77,7 @@ struct Cost {
 pub(crate) struct LightTrial {
     /// The number of light paths for each pixel that leaves the least variance for the time.
     pub per_pixel: f64,
-    /// Variance times time with so many, over that of camera paths alone.
+    /// Variance times time with that number, over that of camera paths alone.
     left: f64,
     /// The same if light paths took no time and had no noise.
     least: f64,
