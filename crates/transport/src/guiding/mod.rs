@@ -30,7 +30,7 @@ pub(crate) use mixture::{
 };
 pub(crate) use refracting_bodies::RefractingBodies;
 pub(crate) use specular_image::{Ball, Eye, Shows, SpecularImage};
-pub(crate) use specular_objects::{PARTS, SpecularObjects};
+pub(crate) use specular_objects::SpecularObjects;
 
 use crate::bsdf::Bsdf;
 use crate::light::{LightTable, visible_sum};

@@ -17,8 +17,6 @@ pub(crate) struct SpecularObjects {
     /// Their primitives wherever they are placed, and the area of each with all before it.
     primitives: Vec<SurfaceId>,
     area_until: Vec<f64>,
-    /// Where on them light paths begin; `None` is evenly.
-    starts: Option<Starts>,
     /// Whether light of lamps without area is found too. Then specular connections do not look for it.
     pub finds_sources: bool,
     /// Light paths of a sample, for each pixel of the picture.
@@ -60,7 +58,7 @@ impl SpecularObjects {
         let (area_until, primitives) = (area_until.collect(), all.iter().map(|placed| placed.surface).collect());
         let finds_sources = surfaces.other_properties(&is_one).all(|of| !of.has_delta());
         match area > 0.0 {
-            true => Ok(Self { is_one, primitives, area_until, starts: None, finds_sources, paths_per_pixel: 1.0 }),
+            true => Ok(Self { is_one, primitives, area_until, finds_sources, paths_per_pixel: 1.0 }),
             false => Err("there is no smooth mirror, metal or glass that keeps its shape where it is placed"),
         }
     }
@@ -72,61 +70,17 @@ impl SpecularObjects {
     }
 
     /// The area of all specular objects.
-    fn area(&self) -> f64 {
+    pub(crate) fn area(&self) -> f64 {
         self.area_until.last().copied().unwrap_or(0.0)
     }
 
-    /// Lets light paths begin in each of the [`PARTS`] in proportion to its weight, but for a quarter of them, which begin evenly. Without weights, and
-    /// with weights that say nothing, all begin evenly.
-    pub(crate) fn begin_by(&mut self, weights: Option<&[f64]>) {
-        let tells = |weights: &&[f64]| {
-            let whole = weights.iter().sum::<f64>();
-            whole > 0.0 && whole.is_finite()
-        };
-        self.starts = weights.filter(tells).map(Starts::new);
-    }
-
-    /// A point of the specular objects for numbers in [0, 1), and the area that it stands for.
-    pub(crate) fn point(&self, geometry: &Geometry, u: f64, on_shape: [f64; 2]) -> Option<(SurfaceId, Vec3<f64>, f64)> {
-        let (place, density) = self.starts.as_ref().map_or((u, 1.0), |starts| starts.place(u));
-        let at = place * self.area();
+    /// A point of the specular objects for numbers in [0, 1); all are equally likely.
+    pub(crate) fn point(&self, geometry: &Geometry, u: f64, on_shape: [f64; 2]) -> Option<(SurfaceId, Vec3<f64>)> {
+        let at = u * self.area();
         let index = self.area_until.partition_point(|&until| until <= at).min(self.primitives.len() - 1);
         let surface = self.primitives[index];
         let local = geometry.primitive_of(surface).sampler()?.point(on_shape);
-        Some((surface, geometry.placed_point(surface, local, 0.0), self.area() / density))
-    }
-}
-
-/// Equal parts of the area of all specular objects, in the order of their primitives.
-pub(crate) const PARTS: usize = 1024;
-/// The share of light paths that begin evenly, whatever was learned.
-const EVEN: f64 = 0.25;
-
-/// The probability with which light paths begin in each of the [`PARTS`].
-#[derive(Clone, Debug)]
-struct Starts {
-    /// That of each part together with all before it, from 0 to 1.
-    until: Vec<f64>,
-}
-
-impl Starts {
-    fn new(weights: &[f64]) -> Self {
-        let (whole, mut sum) = (weights.iter().sum::<f64>(), 0.0);
-        let each = |weight: &f64| EVEN / weights.len() as f64 + (1.0 - EVEN) * weight / whole;
-        let mut until = vec![0.0];
-        until.extend(weights.iter().map(each).map(|probability| {
-            sum += probability;
-            sum
-        }));
-        Self { until: until.iter().map(|own| own / sum).collect() }
-    }
-
-    /// The place, as a share of the area, that a number in [0, 1) draws, and its density.
-    fn place(&self, u: f64) -> (f64, f64) {
-        let parts = self.until.len() - 1;
-        let part = self.until[1..].partition_point(|until| *until <= u).min(parts - 1);
-        let probability = self.until[part + 1] - self.until[part];
-        ((part as f64 + (u - self.until[part]) / probability) / parts as f64, probability * parts as f64)
+        Some((surface, geometry.placed_point(surface, local, 0.0)))
     }
 }
 
@@ -192,27 +146,5 @@ impl Surfaces {
             .zip(is_one)
             .filter(|(_, is_one)| !**is_one)
             .map(|(object, _)| &self.properties[object.material])
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// ∫ over places of what numbers draw, each place with the area that it stands for, is 1 over each half of every part.
-    #[test]
-    fn places_stand_for_the_area_that_they_are_drawn_from() {
-        let starts = Starts::new(&[0.0, 1.0, 5.0, 0.5]);
-        let steps = 1 << 20;
-        let mut areas = [0.0; 8];
-        for step in 0..steps {
-            let (place, density) = starts.place((f64::from(step) + 0.5) / f64::from(steps));
-            areas[(8.0 * place) as usize] += 1.0 / (density * f64::from(steps));
-        }
-        // Each end of a half may be off by one step.
-        assert!(areas.iter().all(|area| (area - 0.125).abs() < 4.0 / f64::from(steps) / EVEN), "{areas:?}");
-        // A quarter of all is even, the rest by weight.
-        let (_, density) = starts.place(0.999);
-        assert!((density - (EVEN + (1.0 - EVEN) * 4.0 * 0.5 / 6.5)).abs() < 1e-12, "{density}");
     }
 }

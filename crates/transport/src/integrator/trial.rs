@@ -100,12 +100,6 @@ impl Scales {
         self.sums(squares.zip(&self.levels).map(|(square, (level, _))| (square - level * level).max(0.0)))
     }
 
-    /// What the square of a level counts in each pixel, where the product of both sums is to fall and they are `sums`: each sum by its own.
-    pub(crate) fn worth(&self, sums: [f64; 2]) -> Vec<f64> {
-        let over = |scale: f64, sum: f64| if scale > 0.0 && sum > 0.0 { 1.0 / (scale * sum) } else { 0.0 };
-        self.levels.iter().map(|(_, about)| over(*about, sums[0]) + over(self.of_all, sums[1])).collect()
-    }
-
     /// The sums of the variances of all pixels.
     pub(crate) fn sums(&self, variances: impl Iterator<Item = f64>) -> [f64; 2] {
         let against = |variance: f64, scale: f64| if scale > 0.0 { variance / scale } else { 0.0 };

@@ -3,7 +3,7 @@
 use crate::guiding::SpecularObjects;
 use crate::guiding::{GuidedBy, USUAL_SHARES};
 use crate::integrator::light_tracing::find_specular_objects;
-use crate::integrator::light_tracing::trial::try_light_paths;
+use crate::integrator::light_tracing::trial::light_paths_per_pixel;
 use crate::integrator::trial::{PIXELS, SAMPLES, SHARES, TRIED};
 use crate::plan::{EffectName, LaneModel, Study};
 use crate::sampler::mix;
@@ -137,10 +137,10 @@ impl Prepared {
         let whole = try_camera_paths(self);
         self.specular_objects = Some(specular_objects.clone());
         let rest = try_camera_paths(self);
-        let found = try_light_paths(self, &mut specular_objects, seed, [&whole, &rest]);
+        let found = light_paths_per_pixel(self, &specular_objects, seed, [&whole, &rest]);
         let always = self.scene.integrator.light_tracing == LightTracing::Always;
         specular_objects.paths_per_pixel = found.map_or(1.0, |found| found.per_pixel);
-        self.specular_objects = (always || found.is_some_and(|found| found.is_worth_it())).then_some(specular_objects);
+        self.specular_objects = (always || found.is_some_and(|found| found.is_worth_it)).then_some(specular_objects);
         if self.specular_objects.is_some() {
             self.tune_camera_paths(seed);
         }

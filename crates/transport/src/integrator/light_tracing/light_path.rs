@@ -102,9 +102,9 @@ fn begin<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
 ) -> Option<Beginning<'a, N>> {
     let world = &tracer.world;
     let [u1, u2, u_place, u_light] = sampler.set(0);
-    // The paths of a sample are spread evenly over the area, or over what was learned of it.
+    // The paths of a sample are spread evenly over the area.
     let u_place = (path_number as f64 + u_place) / of as f64;
-    let (surface, position, area) = specular_objects.point(world.geometry, u_place, [u1, u2])?;
+    let (surface, position) = specular_objects.point(world.geometry, u_place, [u1, u2])?;
     let hit = Hit { t: 0.0, surface, uv: world.geometry.parameters(surface, position, 0.0) };
     let point = world.geometry.surface(&Ray::free(position, Vec3::new(0.0, 0.0, 1.0)), &hit);
 
@@ -127,7 +127,7 @@ fn begin<'a, M: WavelengthModel<N>, P: Polarisation<N>, const N: usize>(
     let colour = colour.or_else(|| world.colour_of_emitter(number as u32, target, point.time));
     let white = path.spectrum_of_light(world, number as u32);
     let scale = scale * light.bright_share(toward_lamp);
-    let power = path.coloured(white, colour) * (scale * cos * area / (density * probability));
+    let power = path.coloured(white, colour) * (scale * cos * specular_objects.area() / (density * probability));
     vertex.prepare_scattering(world);
     Some(Beginning { vertex, power })
 }

@@ -10,9 +10,8 @@
 //! against each other. Only a sky is divided: light paths bring the share of it that is above its mean, and camera paths the faint rest, which they find
 //! well.
 //!
-//! **One light path** ([`trace_light_path`]). It begins at the specular object that is next to the lamp. Its first point is on the area of all
-//! specular objects: anywhere, or more often where light paths of a [trial] have brought much. A shadow ray looks for a lamp from there, as from any
-//! vertex. So every kind of lamp works. Then the path goes on, away from the
+//! **One light path** ([`trace_light_path`]). It begins at the specular object that is next to the lamp. Its first point is uniform on the area of all
+//! specular objects, and a shadow ray looks for a lamp from there, as from any vertex. So every kind of lamp works. Then the path goes on, away from the
 //! lamp. From the first surface on that is no specular object, each vertex is connected to a point on the lens.
 //!
 //! **The film.** A sample of the picture has a fixed number of light paths, from an eighth to eight for each pixel. What they bring to a pixel is added

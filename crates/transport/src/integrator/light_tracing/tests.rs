@@ -367,7 +367,7 @@ fn paths_begin_evenly_over_the_area_of_the_specular_objects() {
     for i in 0..count {
         let u = (f64::from(i) + 0.5) / f64::from(count);
         let on_shape = [(u * 1009.0).fract(), (u * 8999.0).fract()];
-        let (surface, point, _) = specular_objects.point(&prepared.geometry, u, on_shape).unwrap();
+        let (surface, point) = specular_objects.point(&prepared.geometry, u, on_shape).unwrap();
         if let etalon_geometry::Primitive::Sphere(_) = prepared.geometry.primitive_of(surface) {
             on_ball += 1;
             upper += i32::from(prepared.frame.to_world_m(point).y > 0.45);

@@ -5,14 +5,12 @@
 
 use super::{LIGHT_RAY, splats};
 use crate::film::Counters;
-use crate::guiding::{PARTS, SpecularObjects};
+use crate::guiding::SpecularObjects;
 use crate::integrator::tracer::Tracer;
 use crate::integrator::trial::{SAMPLES, Scales, Tried};
 use crate::integrator::wavelength_lanes::WavelengthModel;
 use crate::polarisation::Polarisation;
-use crate::sampler::mix;
 use crate::scene::prepare::Prepared;
-use rayon::prelude::*;
 
 /// Light paths of each sample that are tried, and samples.
 const PATHS: u64 = 1 << 14;
@@ -21,8 +19,6 @@ const LIGHT_SAMPLES: u32 = 8;
 const PER_PIXEL: [f64; 7] = [0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0];
 /// What light paths must leave of variance times time.
 const WORTH_IT: f64 = 0.8;
-/// Variance times time with learned starts over that with even ones, above which the even ones are kept.
-const LEARNED_WORTH_IT: f64 = 0.9;
 /// Where camera paths find less of the light than this, what bears the rest was too rare for the trial.
 const FOUND: f64 = 0.5;
 /// Connections of about equal weight from which something is known of the light that they bring.
@@ -77,90 +73,17 @@ struct Cost {
 pub(crate) struct LightTrial {
     /// The number of light paths for each pixel that leaves the least variance for the time.
     pub per_pixel: f64,
-    /// Variance times time with that number, over that of camera paths alone.
-    left: f64,
-    /// The same if light paths took no time and had no noise.
-    least: f64,
+    /// Whether that is less than camera paths leave alone.
+    pub is_worth_it: bool,
 }
 
-impl LightTrial {
-    /// Whether light paths leave less than camera paths alone.
-    pub(crate) fn is_worth_it(&self) -> bool {
-        self.left < WORTH_IT
-    }
-}
-
-/// Learns from where light paths begin best, and tells what they would leave of the noise; `None` if too few of them reach the camera to say.
-pub(crate) fn try_light_paths(
-    prepared: &Prepared,
-    specular_objects: &mut SpecularObjects,
-    seed: u64,
-    camera: [&CameraTrial; 2],
-) -> Option<LightTrial> {
-    let (evenly, worth) = try_starts(prepared, specular_objects, seed, camera)?;
-    if !(evenly.least < WORTH_IT && evenly.least < LEARNED_WORTH_IT * evenly.left) {
-        return Some(evenly);
-    }
-    // Each with random numbers of its own.
-    let [learned_by, judged_by] = [mix(seed), mix(mix(seed))];
-    specular_objects.begin_by(Some(&worth_of_parts(prepared, specular_objects, learned_by, &worth)));
-    match try_starts(prepared, specular_objects, judged_by, camera) {
-        Some((learned, _)) if learned.left < LEARNED_WORTH_IT * evenly.left => Some(learned),
-        _ => {
-            specular_objects.begin_by(None);
-            Some(evenly)
-        }
-    }
-}
-
-/// A weight of each part of the specular objects: the root of the mean square of what its light paths bring over their mean number of rays. Drawn by these
-/// weights, light paths leave the least variance for the time. `worth` is what the square of a level counts in each pixel that was tried.
-fn worth_of_parts(
-    prepared: &Prepared,
-    specular_objects: &SpecularObjects,
-    seed: u64,
-    (tried, worth): &(Tried, Vec<f64>),
-) -> Vec<f64> {
-    let rect = prepared.whole_rect();
-    // Of a small picture fewer, lest the trial cost more than it.
-    let of_each = (PATHS.min(rect.area()) / PARTS as u64).max(1);
-    let of = of_each * PARTS as u64;
-    let of_part = |part: u64| {
-        let (mut square, mut counters) = (0.0, Counters::default());
-        let numbers = of_each * part..of_each * (part + 1);
-        for sample in 0..LIGHT_SAMPLES {
-            let trace = prepared.kernel().trace_light_paths;
-            trace(
-                prepared,
-                specular_objects,
-                seed,
-                (numbers.clone(), of),
-                (sample, rect),
-                &mut counters,
-                &mut |brings| {
-                    let level = level(brings.xyz);
-                    let [x, y] = brings.place_px.map(|place| place.max(0.0) as u32);
-                    // What is not finite the picture reports.
-                    if level.is_finite() {
-                        square += level * level * worth[tried.cell(x, y)];
-                    }
-                },
-            );
-        }
-        let paths = of_each * u64::from(LIGHT_SAMPLES);
-        let rays = (counters.rays + counters.shadow_rays).max(paths);
-        (square / rays as f64).sqrt()
-    };
-    (0..PARTS as u64).into_par_iter().map(of_part).collect()
-}
-
-/// What light paths would leave of the noise that begin as they do, and what the square of a level counts in each pixel that was tried.
-fn try_starts(
+/// What light paths would leave of the noise; `None` if too few of them reach the camera to say.
+pub(crate) fn light_paths_per_pixel(
     prepared: &Prepared,
     specular_objects: &SpecularObjects,
     seed: u64,
     [whole, rest]: [&CameraTrial; 2],
-) -> Option<(LightTrial, (Tried, Vec<f64>))> {
+) -> Option<LightTrial> {
     let tried = Tried::of(prepared);
     let rect = prepared.whole_rect();
     let splats = splats::of_paths(prepared, specular_objects, seed, (PATHS.min(rect.area()), 0..LIGHT_SAMPLES), rect);
@@ -202,8 +125,7 @@ fn try_starts(
         let least = scales.sums(least_variances(means.iter().map(|mean| share * mean)));
         whole.variances = [0, 1].map(|scale| whole.variances[scale] + least[scale]);
     }
-    let worth = scales.worth(of_light.variances);
-    Some((best(whole, rest, of_light), (tried, worth)))
+    Some(best(whole, rest, of_light))
 }
 
 /// The least variances of light, of these means over the pixels that were tried, which no camera path has met: of all that were tried at most one
@@ -221,9 +143,7 @@ fn best(whole: Cost, rest: Cost, of_light: Cost) -> LightTrial {
         product(left, rest.rays + of_light.rays * per_pixel)
     };
     let per_pixel = PER_PIXEL.into_iter().min_by(|a, b| with(*a).total_cmp(&with(*b))).unwrap_or(1.0);
-    let of_camera = product(whole.variances, whole.rays);
-    let least = product(rest.variances, rest.rays) / of_camera;
-    LightTrial { per_pixel, left: with(per_pixel) / of_camera, least }
+    LightTrial { per_pixel, is_worth_it: with(per_pixel) < WORTH_IT * product(whole.variances, whole.rays) }
 }
 
 #[cfg(test)]
@@ -237,7 +157,7 @@ mod tests {
         let rest = cost(1.0, 1000.0);
         let chosen = |whole, rest, of_light| {
             let found = best(whole, rest, of_light);
-            found.is_worth_it().then_some(found.per_pixel)
+            found.is_worth_it.then_some(found.per_pixel)
         };
         // As many as balance the two kinds.
         assert_eq!(chosen(whole, rest, cost(1.0, 1000.0)), Some(1.0));
