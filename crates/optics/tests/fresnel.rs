@@ -210,6 +210,14 @@ fn the_diffuse_external_reflectance_is_walshs() {
 }
 
 #[test]
+fn nothing_is_reflected_where_a_metal_is_what_is_around_it() {
+    for c in [0.0, 1e-300, 0.5, 1.0] {
+        let f = conductor(c, 1.0, 0.0);
+        assert_eq!((f.reflectance_s, f.reflectance_p, f.reflectance), (0.0, 0.0, 0.0), "{c}");
+    }
+}
+
+#[test]
 fn metals_agree_with_complex_arithmetic() {
     let mut worst = [0.0_f64; 2];
     for line in include_str!("reference/conductor.csv").lines().filter(|line| !line.starts_with('#')) {

@@ -133,6 +133,7 @@ pub(crate) struct Between {
     pub(super) share: f64,
 }
 
+/// The cosine of a node. From a table: each look-up of a loss asks for two.
 pub(super) const fn node(i: usize) -> f64 {
     const ALL: [f64; NODES] = {
         let (mut nodes, mut i) = ([0.0; NODES], 0);

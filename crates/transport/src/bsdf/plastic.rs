@@ -109,7 +109,7 @@ impl Plastic {
         let base = |nm: f64| {
             let index = coat.eval(nm);
             let ground = Ground { n2: index * index, let_out: let_out.eval(nm), internal_reflection };
-            ground.of(Lanes([reflectance.mean(nm)]))[0] * mean_transmittance(index)
+            ground.of(reflectance.mean(nm)) * mean_transmittance(index)
         };
         let ground = steps().map(base).sum::<f64>() / 65.0;
         Self { reflectance, coat, let_out, internal_reflection, rough, tint: None, dispersive, reference, ground }
@@ -197,7 +197,7 @@ impl Plastic {
             });
             let [(t_o, a_o), (t_i, a_i)] =
                 [local_o, local_i].map(|w| (self.transmittance(w, index), self.diattenuation(w, index)));
-            let ground = t_o * t_i * self.ground(nm, index).of(Lanes([reflectance[lane]]))[0] * FRAC_1_PI;
+            let ground = t_o * t_i * self.ground(nm, index).of(reflectance[lane]) * FRAC_1_PI;
             let s = |w: Vec3<f64>| self.rough.as_ref().map_or(n.cross(w), |rough| rough.distribution.s(&facing, n, w));
             mueller::mixed([coat, (ground, super::mueller::forgotten(s, (wo, wi, x), a_o, a_i))])
         }))
@@ -244,7 +244,7 @@ impl Plastic {
         let diffuse = wi.z * FRAC_1_PI;
         let passed_o = self.transmittance(wo, self.reference);
         let reflectance: Lanes<f64, N> = self.reflectance.lanes(lambda_nm, at.texture_point());
-        // T(µ_o) T(µ_i), how the ground answers, and f·|cos θ_i| of the coat's facets without its tint.
+        // T(µ_o) T(µ_i), what the ground makes of it, and f·|cos θ_i| of the coat's facets without its tint.
         let coat = |nm: f64, index: f64, passed_o: f64| {
             let passed = passed_o * self.transmittance(wi, index);
             let reflected = facets.as_ref().map_or(0.0, |facets| {
@@ -257,14 +257,14 @@ impl Plastic {
             // The coat does the same in every lane.
             false => {
                 let (passed, ground, reflected) = coat(lambda_nm[0], self.reference, passed_o);
-                (ground.of(reflectance) * passed * diffuse, Lanes::splat(reflected))
+                (reflectance.map(|rho| passed * ground.of(rho) * diffuse), Lanes::splat(reflected))
             }
             true => {
                 let mut of_both = [Lanes::ZERO; 2];
                 for lane in 0..N {
                     let index = self.coat.eval(lambda_nm[lane]);
                     let (passed, ground, reflected) = coat(lambda_nm[lane], index, self.transmittance(wo, index));
-                    of_both[0][lane] = passed * ground.of(Lanes([reflectance[lane]]))[0] * diffuse;
+                    of_both[0][lane] = passed * ground.of(reflectance[lane]) * diffuse;
                     of_both[1][lane] = reflected;
                 }
                 (of_both[0], of_both[1])
@@ -319,10 +319,10 @@ impl Plastic {
 impl Ground {
     /// ρ/(n²(1 − ρ r_i)); where the ground colours light only once, ρ/(n²(1 − r_i)); where that light is lost, ρ.
     #[inline(always)]
-    fn of<const N: usize>(self, rho: Lanes<f64, N>) -> Lanes<f64, N> {
+    fn of(self, rho: f64) -> f64 {
         let Self { n2, let_out, internal_reflection } = self;
         match internal_reflection {
-            InternalReflection::Coloured => rho / ((Lanes::ONE - rho * (1.0 - let_out)) * n2),
+            InternalReflection::Coloured => rho / (n2 * (1.0 - rho * (1.0 - let_out))),
             InternalReflection::Uncoloured => rho / (n2 * let_out),
             InternalReflection::Lost => rho,
         }
