@@ -1,4 +1,4 @@
-"""LuxCore adapter (pyluxcore, PATHCPU)."""
+"""LuxCore adapter (pyluxcore): path tracing, with light paths if asked, or bidirectional path tracing."""
 import collections
 import math
 import os
@@ -227,6 +227,11 @@ class Peer:
         d = s["max_depth"]  # checked at depths 2-4 against Mitsuba: same convention
         for k in ("total", "diffuse", "glossy", "specular"):
             P("path.pathdepth." + k, d)
+        # Of the bidirectional engine.
+        P("path.maxdepth", d)
+        P("light.maxdepth", d)
+        # Light paths bring what mirrors and glass throw on surfaces: four camera paths for each of them, its default.
+        P("path.hybridbackforward.enable", bool(self.opts.get("light_paths")))
         P("path.clamping.variance.maxvalue", 0.0)
         if "light_strategy" in self.opts:
             P("lightstrategy.type", self.opts["light_strategy"].upper())

@@ -46,12 +46,17 @@ ENTRIES = {
     "mitsuba-rgb": ("mitsuba", "llvm_ad_rgb", {"sampler": "multijitter", "chunk": 1024}, ("prism",)),
     "mitsuba-mono": ("mitsuba", "llvm_ad_mono", {"sampler": "multijitter", "chunk": 1024}, ("cornell", "glass", "prism-plain", "dof", "mesh1m")),
     "luxcore": ("luxcore", "pathcpu", {}, ("prism-plain",)),
+    "luxcore-bidirectional": ("luxcore", "bidircpu", {}, ("prism-plain",)),
+    "luxcore-light-paths": ("luxcore", "pathcpu", {"light_paths": True}, ("prism-plain",)),
     "cycles": ("cycles", "cpu", {}, ("prism",)),
+    "cycles-shadow-caustics": ("cycles", "cpu", {"shadow_caustics": True}, ("prism",)),
 }
 SPP = {"cornell": [16, 64], "glass": [16, 64], "prism": [64, 256], "prism-plain": [64, 256], "dof": [16, 64], "mesh1m": [16, 64]}
 
 
 DRAWN_ENTRIES = ["etalon", "mitsuba-spectral", "mitsuba-rgb", "luxcore", "cycles"]
+# Ways to find caustics, which ordinary scenes do not ask for.
+CAUSTIC_ENTRIES = ["luxcore-bidirectional", "luxcore-light-paths", "cycles-shadow-caustics"]
 LOG = ROOT / "docs/log/drawn-races.jsonl"
 
 
@@ -129,7 +134,8 @@ def run_scene(scene, names, args, folder):
     kept = {w.name: {spp: Level() for spp in spps} for w in workers}
     for spp in spps:
         for w in workers:
-            w.render(spp, 98)  # compiles, where the sample count is part of the program
+            if ENTRIES[w.name][0] == "mitsuba":
+                w.render(spp, 98)  # compiles: the sample count is part of the program
     for turn in range(args.rounds):
         for spp in spps:
             # Each in turn, and in the other direction every second time.
@@ -294,7 +300,8 @@ def main():
     parser.add_argument("--threads", type=int, default=os.cpu_count())
     parser.add_argument("--out", default=str(ROOT / "out/race"))
     args = parser.parse_args()
-    args.entries = args.entries or (DRAWN_ENTRIES if args.draw or args.hard else list(ENTRIES))
+    usual = DRAWN_ENTRIES if args.draw else DRAWN_ENTRIES + CAUSTIC_ENTRIES if args.hard else [name for name in ENTRIES if name not in CAUSTIC_ENTRIES]
+    args.entries = args.entries or usual
     for given, known in ((args.scenes, SPP), (args.entries, ENTRIES)):
         unknown = [name for name in given if name not in known]
         if unknown:
