@@ -100,7 +100,9 @@ fn an_export_holds_every_truth_and_our_own_renders_of_it_pass_as_pictures() {
     let folder = tempfile::tempdir().unwrap();
     let (truths, pictures) = (folder.path().join("truths"), folder.path().join("pictures"));
     exported(&truths);
-    assert_eq!(entries(&truths), ["README.md", "judge.py", "neutral.schema.json", "scenes", "truths.json"]);
+    let files =
+        ["LICENSE-APACHE", "LICENSE-MIT", "README.md", "judge.py", "neutral.schema.json", "scenes", "truths.json"];
+    assert_eq!(entries(&truths), files);
     let list: Value = serde_json::from_str(&std::fs::read_to_string(truths.join("truths.json")).unwrap()).unwrap();
     assert!(list["truths"].as_array().unwrap().len() >= 136);
 

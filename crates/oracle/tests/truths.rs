@@ -1,11 +1,12 @@
 //! The list of truths itself: complete, consistent, confirmed, and equal to what is published.
 
-use std::collections::HashSet;
+use std::collections::{BTreeMap, HashSet};
+use std::fmt::Write as _;
 
 use etalon_oracle::{
     statistics::Estimate,
     subjects::Reading,
-    truths::{Claim, Quantity, Truth, exchange_files, judge, judge_to, truths},
+    truths::{Claim, Quantity, REMOVED, SET_VERSION, Truth, exchange_files, judge, judge_to, truths},
 };
 
 fn find(name: &str) -> Truth {
@@ -170,6 +171,16 @@ fn every_exported_scene_keeps_to_the_neutral_form_and_every_truth_is_listed() {
         assert!(errors.is_empty() && truth.files.is_empty(), "{}: {errors:?}", truth.name);
     }
     let index = json("truths.json");
+    assert_eq!((&index["version"], &index["removed"]), (&SET_VERSION.into(), &REMOVED.into()));
+    let digest = index["digest"].as_str().unwrap();
+    let neutral = list.iter().filter(|truth| !truth.claims.contains(&Claim::WholeFormat)).count();
+    for said in [
+        format!("version {SET_VERSION} of the set, with the digest `{digest}`"),
+        format!("{} truths: {neutral} are in the neutral form", list.len()),
+    ] {
+        assert!(text("README.md").contains(&said), "the README does not say: {said}");
+    }
+    assert!(text("LICENSE-MIT").starts_with("MIT License") && text("LICENSE-APACHE").contains("Apache License"));
     let entries = index["truths"].as_array().unwrap();
     assert_eq!(entries.len(), list.len());
     for (entry, truth) in entries.iter().zip(&list) {
@@ -191,4 +202,134 @@ fn every_exported_scene_keeps_to_the_neutral_form_and_every_truth_is_listed() {
     let mut wrong = json(&format!("scenes/{}.json", list[0].name));
     wrong["films"] = 1.into();
     assert!(!form.is_valid(&wrong));
+}
+
+/// The list of names and values that goes with a version of the set: a line with the version, and one for each truth with its name, value and
+/// quantity.
+#[derive(Clone, Debug, PartialEq)]
+struct Kept {
+    version: [u32; 3],
+    truths: BTreeMap<String, (f64, String)>,
+}
+
+/// Where the list is.
+const KEPT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/truths.lock");
+
+fn version(text: &str) -> [u32; 3] {
+    let numbers: Vec<u32> = text.split('.').map(|number| number.parse().expect("a version has numbers")).collect();
+    numbers.try_into().expect("a version has three numbers")
+}
+
+impl Kept {
+    /// The list of the truths as they are.
+    fn now() -> Self {
+        let line = |truth: Truth| (truth.name.clone(), (truth.value(), truth.quantity.name().to_owned()));
+        Self { version: version(SET_VERSION), truths: truths().into_iter().map(line).collect() }
+    }
+
+    fn read(text: &str) -> Self {
+        let mut lines = text.lines().filter(|line| !line.starts_with('#'));
+        let first =
+            lines.next().and_then(|line| line.strip_prefix("version ")).expect("the first line has the version");
+        let line = |line: &str| {
+            let [name, value, quantity] = line.split(' ').collect::<Vec<_>>().try_into().expect("three words a line");
+            (name.to_owned(), (value.parse().expect("a number"), quantity.to_owned()))
+        };
+        Self { version: version(first), truths: lines.map(line).collect() }
+    }
+
+    fn text(&self) -> String {
+        let [major, minor, patch] = self.version;
+        let mut text = "# The names, values and quantities of all truths. ETALON_UPDATE_SNAPSHOTS=1 cargo test --release -p etalon-oracle --test truths\n\
+             # writes this file; raise SET_VERSION before.\n"
+            .to_owned();
+        let _ = writeln!(text, "version {major}.{minor}.{patch}");
+        for (name, (value, quantity)) in &self.truths {
+            let _ = writeln!(text, "{name} {value:?} {quantity}");
+        }
+        text
+    }
+
+    /// Names that are gone, names whose truths read something else, and new names.
+    fn changes(&self, now: &Self) -> [Vec<String>; 3] {
+        // Values are computed, and what is 0 may be a rounding error instead.
+        let alike = |(a, of_a): &(f64, String), (b, of_b): &(f64, String)| {
+            of_a == of_b && (a - b).abs() <= 1e-9 * a.abs().max(b.abs()) + 1e-15
+        };
+        let names = |of: &Self, keep: &dyn Fn(&String) -> bool| -> Vec<String> {
+            of.truths.keys().filter(|name| keep(name)).cloned().collect()
+        };
+        let [was, is] = [self, now].map(|list| |name: &String| list.truths.get(name));
+        [
+            names(self, &|name| is(name).is_none()),
+            names(self, &|name| is(name).is_some_and(|is| !alike(&self.truths[name], is))),
+            names(now, &|name| was(name).is_none()),
+        ]
+    }
+
+    /// The smallest version that may follow with these changes.
+    fn least_version(&self, [gone, changed, added]: &[Vec<String>; 3]) -> [u32; 3] {
+        let [major, minor, patch] = self.version;
+        match () {
+            () if !gone.is_empty() || !changed.is_empty() => [major + 1, 0, 0],
+            () if !added.is_empty() => [major, minor + 1, 0],
+            () => [major, minor, patch],
+        }
+    }
+}
+
+/// Who has results for a version of the set can rely on its names and values.
+#[test]
+fn names_and_values_stay_within_a_version_of_the_set() {
+    let mut now = Kept::now();
+    assert!(REMOVED.iter().all(|name| !now.truths.contains_key(*name)), "a truth in REMOVED is there");
+    let update = "ETALON_UPDATE_SNAPSHOTS=1 cargo test --release -p etalon-oracle --test truths";
+    let writes = std::env::var_os("ETALON_UPDATE_SNAPSHOTS").is_some();
+    if let Ok(text) = std::fs::read_to_string(KEPT) {
+        let before = Kept::read(&text);
+        let changes = before.changes(&now);
+        let [major, minor, patch] = before.least_version(&changes);
+        let [gone, changed, added] = &changes;
+        let listed = changes.iter().all(Vec::is_empty) && before.version == now.version;
+        assert!(
+            listed || writes && now.version >= [major, minor, patch],
+            "names or values of truths changed: raise SET_VERSION from {:?} to {major}.{minor}.{patch} or more, and run `{update}`\n\
+             gone: {gone:?}\nchanged: {changed:?}\nadded: {added:?}",
+            before.version
+        );
+        let unlisted: Vec<&String> = gone.iter().filter(|name| !REMOVED.contains(&name.as_str())).collect();
+        assert!(unlisted.is_empty(), "REMOVED must list {unlisted:?}");
+        // The last digits of what did not change stay as they are.
+        for (name, line) in before.truths {
+            if let Some(kept) = now.truths.get_mut(&name).filter(|_| !changed.contains(&name)) {
+                *kept = line;
+            }
+        }
+    } else {
+        assert!(writes, "{KEPT} is not there: run `{update}`");
+    }
+    if writes {
+        std::fs::write(KEPT, now.text()).expect("the list can be written");
+    }
+}
+
+#[test]
+fn a_version_follows_from_what_changed() {
+    let kept = |version: [u32; 3], truths: &[(&str, f64, &str)]| {
+        let line = |&(name, value, quantity): &(&str, f64, &str)| (name.to_owned(), (value, quantity.to_owned()));
+        Kept { version, truths: truths.iter().map(line).collect() }
+    };
+    let before = kept([2, 3, 4], &[("a", 1.0, "S0"), ("b", 0.0, "S1")]);
+    assert_eq!(Kept::read(&before.text()), before);
+    let follows = |truths: &[(&str, f64, &str)]| before.least_version(&before.changes(&kept([2, 3, 4], truths)));
+    assert_eq!(follows(&[("a", 1.0 + 0.9e-9, "S0"), ("b", -1e-16, "S1")]), [2, 3, 4]);
+    assert_eq!(follows(&[("a", 1.0, "S0"), ("b", 0.0, "S1"), ("c", 5.0, "S0")]), [2, 4, 0]);
+    for changed in [
+        &[("a", 1.0 + 1.1e-9, "S0"), ("b", 0.0, "S1")],
+        &[("a", 1.0, "meters"), ("b", 0.0, "S1")],
+        &[("a", 1.0, "S0"), ("c", 0.0, "S1")],
+    ] {
+        assert_eq!(follows(changed), [3, 0, 0], "{changed:?}");
+    }
+    assert_eq!(follows(&[("a", 1.0, "S0")]), [3, 0, 0]);
 }

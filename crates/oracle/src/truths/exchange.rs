@@ -3,7 +3,11 @@
 //! [`exchange_files`] gives the folder that such a renderer reads; [`Reading::from_pixels`] and
 //! [`Reading::from_means`](crate::subjects::Reading::from_means) read what it drew.
 
+mod set;
+
 use serde_json::{Value, json};
+
+pub use set::{REMOVED, SET_VERSION};
 
 use super::{Claim, Quantity, SceneFile, Truth};
 use crate::{
@@ -20,23 +24,45 @@ pub struct ExchangeFile {
     pub bytes: Vec<u8>,
 }
 
-/// The folder with which a renderer joins: a README, the JSON Schema of the neutral form, the list of truths, and a scene for each truth, with
-/// the files that it names. A judge that needs nothing but Python lies beside them.
+/// The folder with which a renderer joins: a README, the licences, the JSON Schema of the neutral form, the list of truths, and a scene for each
+/// truth, with the files that it names. A judge that needs nothing but Python lies beside them.
 ///
 /// # Panics
 /// If two scenes name different files alike.
 #[must_use]
 pub fn exchange_files(truths: &[Truth]) -> Vec<ExchangeFile> {
     let file = |path: &str, text: &str| ExchangeFile { path: path.to_owned(), bytes: text.as_bytes().to_vec() };
-    let (version, license) = (env!("CARGO_PKG_VERSION"), env!("CARGO_PKG_LICENSE"));
-    let list = json!({ "format": 1, "version": version, "license": license, "truths": truths.iter().map(entry).collect::<Vec<_>>() });
+    let scenes = scene_files(truths);
+    let digest = set::digest(
+        truths.iter().map(|truth| (truth.name.as_str(), truth.value())),
+        scenes.iter().map(|file| (file.path.as_str(), file.bytes.as_slice())),
+    );
+    let list = json!({
+        "format": 1,
+        "version": SET_VERSION,
+        "digest": digest,
+        "written_by": concat!("etalon ", env!("CARGO_PKG_VERSION")),
+        "license": env!("CARGO_PKG_LICENSE"),
+        "removed": REMOVED,
+        "truths": truths.iter().map(entry).collect::<Vec<_>>(),
+    });
     let list = serde_json::to_string_pretty(&list).expect("a JSON value always prints") + "\n";
     let mut files = vec![
-        file("README.md", include_str!("exchange/README.md")),
+        file("README.md", &readme(truths, &digest)),
+        file("LICENSE-APACHE", include_str!("../../../../LICENSE-APACHE")),
+        file("LICENSE-MIT", include_str!("../../../../LICENSE-MIT")),
         file("judge.py", include_str!("exchange/judge.py")),
         file("neutral.schema.json", include_str!("exchange/neutral.schema.json")),
         file("truths.json", &list),
     ];
+    files.extend(scenes);
+    files
+}
+
+/// The scenes, and the files that they name.
+fn scene_files(truths: &[Truth]) -> Vec<ExchangeFile> {
+    let scene = |path: String, text: String| ExchangeFile { path, bytes: (text + "\n").into_bytes() };
+    let mut files: Vec<ExchangeFile> = Vec::new();
     for truth in truths {
         for SceneFile { name, bytes } in &truth.files {
             let path = format!("scenes/{name}");
@@ -45,12 +71,26 @@ pub fn exchange_files(truths: &[Truth]) -> Vec<ExchangeFile> {
                 None => files.push(ExchangeFile { path, bytes: bytes.clone() }),
             }
         }
-        files.push(file(&format!("scenes/{}.json", truth.name), &(truth.scene.clone() + "\n")));
+        files.push(scene(format!("scenes/{}.json", truth.name), truth.scene.clone()));
         if truth.band_nm.is_some() {
-            files.push(file(&format!("scenes/{}.white.json", truth.name), &(truth.white_scene() + "\n")));
+            files.push(scene(format!("scenes/{}.white.json", truth.name), truth.white_scene()));
         }
     }
     files
+}
+
+/// The README, with what it says of these truths.
+fn readme(truths: &[Truth], digest: &str) -> String {
+    let whole = truths.iter().filter(|truth| truth.claims.contains(&Claim::WholeFormat)).count();
+    [
+        ("{version}", SET_VERSION.to_owned()),
+        ("{digest}", digest.to_owned()),
+        ("{truths}", truths.len().to_string()),
+        ("{neutral}", (truths.len() - whole).to_string()),
+        ("{whole}", whole.to_string()),
+    ]
+    .iter()
+    .fold(include_str!("exchange/README.md").to_owned(), |text, (mark, said)| text.replace(mark, said))
 }
 
 /// A truth's entry in `truths.json`.

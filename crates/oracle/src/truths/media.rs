@@ -5,8 +5,8 @@ use std::f64::consts::PI;
 use serde_json::{Value, json};
 
 use super::{
-    Claim, Truth, air, densities, published_media,
-    scene::{Scene, black, block, glass, level_square, rough_glass, solid, sphere},
+    Claim, Truth, air, densities, media_furnaces, published_media,
+    scene::{Scene, black, block, level_square, sphere},
 };
 use crate::quadrature::interval;
 use crate::transfer::{
@@ -15,7 +15,7 @@ use crate::transfer::{
 };
 
 pub(super) fn truths() -> Vec<Truth> {
-    let mut list = furnaces();
+    let mut list = media_furnaces::truths();
     list.extend(half_spaces());
     list.extend(slabs());
     list.extend(scattered_once_in_slabs());
@@ -44,12 +44,12 @@ pub(super) fn forward(g: f64) -> Value {
 }
 
 /// Mean of a square picture that a ball's disk touches on four sides, before a sky of 1.
-fn framed(disk: f64) -> f64 {
+pub(super) fn framed(disk: f64) -> f64 {
     1.0 + 0.25 * PI * (disk - 1.0)
 }
 
 /// A ball of radius 1 m under a sky of 1, which fills the height of the picture.
-fn ball(material: Value) -> Scene {
+pub(super) fn ball(material: Value) -> Scene {
     Scene::orthographic([0.0, 0.0, 3.0], [0.0; 3], 2.0)
         .thing(json!({ "shape": sphere([0.0; 3], 1.0), "material": material }))
         .sky(1.0)
@@ -61,59 +61,6 @@ pub(super) fn vol(cells: [i32; 3], box_m: [[f32; 3]; 2], values: &[f32]) -> Vec<
     [1, cells[0], cells[1], cells[2], 1].iter().for_each(|word| bytes.extend(word.to_le_bytes()));
     box_m.as_flattened().iter().chain(values).for_each(|number| bytes.extend(number.to_le_bytes()));
     bytes
-}
-
-fn furnaces() -> Vec<Truth> {
-    let double = json!({ "type": "double-henyey-greenstein", "g": [0.85, -0.3], "weight": 0.8 });
-    let table = json!({ "type": "tabulated", "angles_deg": [0, 30, 90, 180], "values": [9, 2, 0.5, 1] });
-    let rayleigh = json!({ "type": "rayleigh" });
-    let truth = |name: &str, scene: Scene| {
-        Truth::new(name, &scene.spp(64), 1.0, "1")
-            .because("Where all light has the radiance 1, scattering without loss changes nothing.")
-            .sees(0.01)
-            .no_brighter_than(1.0)
-    };
-    let of_phase = |name: &str, phase: &Value| {
-        truth(name, ball(boundary(&medium(2.0, 0.0, phase))))
-            .or_else("scattered light is lost", framed(ball_transmittance(2.0)))
-    };
-    let within = |name: &str, mut material: Value| {
-        material["medium"] = medium(4.0, 0.0, &forward(0.5));
-        truth(name, ball(material))
-    };
-    let mut dense = medium(2.0, 0.0, &forward(0.6));
-    dense["density"] = json!({ "type": "grid", "file": "smoke.vol", "scale": 2.5,
-        "transform": [{ "translate_m": [0.1, 0, 0] }, { "scale": 1.5 }] });
-    let numbers: Vec<f32> = (0..60_u16).map(|i| f32::from(i * 7 % 11)).collect();
-    let smoke = vol([3, 4, 5], [[-1.0; 3], [1.0; 3]], &numbers);
-    let mut air = medium(3.0, 0.0, &isotropic());
-    air["density"] = json!({ "type": "exponential", "scale_height_m": 0.5, "base_m": [0, -1, 0], "up": [0, 2, 1] });
-    let inside = Scene::orthographic([0.0; 3], [0.0, 0.0, -1.0], 0.1)
-        .thing(json!({ "shape": sphere([0.0; 3], 1.0), "material": boundary(&medium(3.0, 0.0, &forward(-0.4))) }));
-    let nested = Scene::orthographic([0.0, 0.0, 3.0], [0.0; 3], 2.0)
-        .thing(json!({ "shape": sphere([0.0; 3], 1.0), "material": solid(1.5, 1) }))
-        .thing({
-            let mut milk = solid(1.33, 2);
-            milk["medium"] = medium(5.0, 0.0, &forward(0.7));
-            json!({ "shape": sphere([0.2, 0.0, 0.0], 0.7), "material": milk })
-        })
-        .sky(1.0);
-    vec![
-        of_phase("fog-in-a-furnace", &isotropic()),
-        of_phase("forward-fog-in-a-furnace", &forward(0.8)),
-        of_phase("two-peaked-fog-in-a-furnace", &double),
-        of_phase("air-in-a-furnace", &rayleigh),
-        of_phase("fog-of-a-table-in-a-furnace", &table),
-        truth("smoke-of-a-grid-in-a-furnace", ball(boundary(&dense)).file("smoke.vol", smoke)),
-        truth("thinning-air-in-a-furnace", ball(boundary(&air))),
-        truth("eye-in-fog-in-a-furnace", inside.sky(1.0)),
-        within("milk-in-glass-in-a-furnace", glass(1.5)).claims(Claim::AveragesPolarisation),
-        within("milk-in-rough-glass-in-a-furnace", rough_glass(1.5, 0.3))
-            .allows(2e-3, "tables of what facets lose err by up to 5e-4 at each of a few crossings; single precision")
-            .claims(Claim::AveragesPolarisation)
-            .claims(Claim::LosslessRoughGlass),
-        truth("milk-by-priority-in-a-furnace", nested).claims(Claim::AveragesPolarisation).claims(Claim::Priorities),
-    ]
 }
 
 /// A slab below z = 0 and wide beyond sight, seen from above at a cosine to the normal, under a sky of 1. What else there is stands below
@@ -211,7 +158,8 @@ fn slabs() -> Vec<Truth> {
                 .no_brighter_than(1.0)
         };
         let reversed = Slab::new(depth, albedo, &legendre_moments(|x| henyey_greenstein(-g, x), 96), 1.0).of_beam();
-        let mut reflected = truth("reflected", &reflects, fluxes.reflected);
+        let mut reflected =
+            truth("reflected", &reflects, fluxes.reflected).or_else("what goes to the other side", fluxes.transmitted);
         let mut transmitted = truth("transmitted", &transmits, fluxes.transmitted)
             .or_else("light that was not scattered alone", (-depth).exp());
         if g != 0.0 {

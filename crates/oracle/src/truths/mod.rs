@@ -18,6 +18,8 @@ mod beckmann;
 mod cameras;
 mod cie171;
 mod claim;
+mod coloured_lamps;
+mod companions;
 mod compound_lenses;
 mod connections;
 mod daylight;
@@ -38,12 +40,15 @@ mod guided;
 mod hidden_lights;
 mod illumination;
 mod image_files;
+mod image_numbers;
 mod images;
+mod indices_and_metals;
 mod instruments;
 mod irradiance;
 mod judge;
 mod lamps;
 mod lamps_behind_glass;
+mod lamps_with_images;
 mod lens_tracer;
 mod light_paths;
 mod lit_fog;
@@ -53,6 +58,7 @@ mod masks;
 mod measured;
 mod measured_files;
 mod media;
+mod media_furnaces;
 mod meters;
 mod motion;
 mod moving_media;
@@ -60,6 +66,7 @@ mod named;
 mod nested_media;
 mod panes;
 mod phase_matrices;
+mod placed_densities;
 mod placed_grids;
 mod polar_disks;
 mod polarised;
@@ -70,10 +77,13 @@ mod prisms;
 mod published_media;
 mod rami;
 mod relief;
+mod relief_in_mirrors;
 mod rough_surfaces;
 mod scene;
+mod second_skies;
 mod shared_paths;
 mod sheets;
+mod sides_and_grains;
 mod skies;
 mod skylight;
 mod slides;
@@ -84,10 +94,12 @@ mod suite_case;
 mod surfaces;
 mod terminators;
 mod textures;
+mod tiles;
 mod tints;
 mod translucent;
 mod tubes;
 mod view_factors;
+mod views;
 mod water;
 
 use std::{sync::LazyLock, thread};
@@ -97,7 +109,7 @@ use serde_json::{Value, json};
 use crate::statistics::poisson_mean_bound;
 pub use cie171::{LUX, cie171};
 pub use claim::Claim;
-pub use exchange::{ExchangeFile, exchange_files};
+pub use exchange::{ExchangeFile, REMOVED, SET_VERSION, exchange_files};
 use expectation::{Expectation, Expected};
 pub use expectation::{Mistake, SecondOpinion};
 pub use irradiance::{
@@ -378,7 +390,7 @@ pub fn truths() -> Vec<Truth> {
     LIST.clone()
 }
 
-const GROUPS: [fn() -> Vec<Truth>; 62] = [
+const GROUPS: [fn() -> Vec<Truth>; 71] = [
     lamps_behind_glass::truths,
     hidden_lights::truths,
     panes::truths,
@@ -441,4 +453,13 @@ const GROUPS: [fn() -> Vec<Truth>; 62] = [
     guided::truths,
     dispersive_facets::truths,
     bands::truths,
+    image_numbers::truths,
+    relief_in_mirrors::truths,
+    lamps_with_images::truths,
+    coloured_lamps::truths,
+    views::truths,
+    indices_and_metals::truths,
+    sides_and_grains::truths,
+    second_skies::truths,
+    placed_densities::truths,
 ];

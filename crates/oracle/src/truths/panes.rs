@@ -1,9 +1,11 @@
-//! Panes that no limit on edges counts: light comes straight through any number of them, and what they reflect is one edge more.
+//! Panes that no limit on edges counts: light comes straight through any number of them, and what they reflect is one edge more. And how a pane
+//! polarises.
 
 use std::f64::consts::PI;
 
 use serde_json::{Value, json};
 
+use super::companions::{self, Light, ROLL_DEG};
 use super::scene::{Scene, black, disk, lambert, level_square, shown};
 use super::{Claim, Truth};
 use crate::laws::fresnel_exact;
@@ -14,12 +16,14 @@ const INDEX: f64 = 1.5;
 const FAR_M: f64 = 2000.0;
 
 pub(super) fn truths() -> Vec<Truth> {
-    vec![
+    let mut list = vec![
         three_panes_in_a_row(),
         disk_lamp(),
         lamp_at_a_point("never").claims(Claim::SpecularConnections),
         lamp_at_a_point("always").claims(Claim::SpecularConnections),
-    ]
+    ];
+    list.extend(between_two_lamps());
+    list
 }
 
 fn pane(height_m: f64, half_m: f64) -> Value {
@@ -131,4 +135,45 @@ fn lamp_at_a_point(light_paths: &str) -> Truth {
     .or_else("panes counted", 0.0)
     .or_else("no pane", shown(mean(|_| 1.0)))
     .sees(5e-3)
+}
+
+/// S₁ and S₂ of a pane at 60°, seen by a rolled camera: a lamp behind it, and one of three times the radiance before it.
+fn between_two_lamps() -> Vec<Truth> {
+    let (cosine, sine) = (0.5_f64, 0.75_f64.sqrt());
+    let (sin, cos) = ROLL_DEG.to_radians().sin_cos();
+    // The camera's right is p before it is rolled.
+    let scene = Scene::orthographic([sine, 0.0, cosine], [0.0; 3], 1e-3)
+        .up([sin * cosine, cos, -sin * sine])
+        .thing(pane(0.0, 10.0))
+        .lamp(level_square([0.0, 0.0, -1.0], 20.0, true), black(), 1.0, "front")
+        .lamp(disk([-3.0 * sine, 0.0, 3.0 * cosine], [sine, 0.0, -cosine], 0.5), black(), 3.0, "front")
+        .set("film", "stokes", json!(true))
+        .film(8, 8)
+        .spp(1024);
+    let powers = fresnel_exact(cosine, INDEX);
+    let through = |r: f64| (1.0 - r) / (1.0 + r);
+    let more = 0.5 * (through(powers.r_p) - through(powers.r_s));
+    let seen = |behind: f64, before: f64| companions::seen_rolled([(behind - before) * more, 0.0, 0.0]);
+    let base = Truth::new("pane-between-two-lamps", &scene, 0.0, "").claims(Claim::CarriesPolarisation);
+    let light = Light {
+        stokes: seen(1.0, 3.0),
+        formula: "(1 − 3)·½((1 − R_p)/(1 + R_p) − (1 − R_s)/(1 + R_s)) times cos 50°, sin 50°",
+        because: "A pane passes (1 − R)/(1 + R) of each polarisation and reflects the rest: of the lamp behind it more of p is seen, of the \
+                  one before it as much more of s.",
+        mistakes: &[
+            ("the reflected light not polarised", seen(1.0, 0.0)),
+            ("what passes not polarised", seen(0.0, 3.0)),
+            ("one face alone", companions::seen_rolled([powers.r_p - powers.r_s, 0.0, 0.0])),
+        ],
+        sees: 0.05,
+        how: ("the beams one by one, as light along two lines", 1e-9),
+    };
+    companions::companions(&base, &light, move || {
+        let beams = |r: f64| (0..60).map(|k| (1.0 - r).powi(2) * r.powi(2 * k)).sum::<f64>();
+        // Of each half, what passes and three times what does not.
+        let halves = [(powers.r_p, 0.0), (powers.r_s, 90.0)];
+        let [p, s] =
+            halves.map(|(r, degrees)| companions::swings_rolled(0.5 * (beams(r) + 3.0 * (1.0 - beams(r))), degrees));
+        [0, 1, 2].map(|i| p[i] + s[i])
+    })
 }

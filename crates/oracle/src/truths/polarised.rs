@@ -1,6 +1,8 @@
 //! Light polarised by one surface and analysed by another: Malus' law at Brewster's angle, the phase of total reflection, Fresnel's
 //! rhombs.
 
+mod companions;
+
 use std::f64::consts::FRAC_PI_8;
 
 use super::{
@@ -188,15 +190,17 @@ fn two_rhombs([re, im]: [f64; 2]) -> [f64; 2] {
     over(times(through, through), [1.0 - both[0], -both[1]])
 }
 
-/// Ways through two rhombs, and those that are left to walk.
+/// Ways through one rhomb or two, and those that are left to walk.
 struct Walk {
     /// Of the total reflections.
     sin2: f64,
+    /// The face that is nearest to the lamp.
+    last: usize,
     orders: Vec<Order>,
 }
 
 impl Walk {
-    /// On from a ray that is about to meet a face: 0 and 1 bound the first rhomb, 2 and 3 the second. At most `left` faces reflect.
+    /// On from a ray that is about to meet a face: 0 and 1 bound the first rhomb, 2 and 3 the second if there is one. At most `left` faces reflect.
     fn step(&mut self, ray: Ray, (face, forward): (usize, bool), path: &[Turn], share: f64, left: u32) {
         let enters = face.is_multiple_of(2) == forward;
         let beyond = if enters { DENSE } else { 1.0 / DENSE };
@@ -219,12 +223,37 @@ impl Walk {
         }
         let share = share * (1.0 - reflectance);
         match (face, forward) {
-            (3, true) => self.orders.push((turns, share)),
+            (face, true) if face == self.last => self.orders.push((turns, share)),
             // Back toward the eye.
             (0, false) => {}
             _ => self.step(on, (ahead, forward), &turns, share, left),
         }
     }
+}
+
+/// The Stokes vector at the eye by way of one rhomb or two before the mirror next to the lamp, all orders of at most eight reflections at faces,
+/// over what the mirrors reflect of light whose polarisations are averaged at each. `direct` is the direct path. If it is `analysed`, it begins
+/// with a mirror, from which the planes of the rhombs are turned by 45°.
+fn along_orders(direct: &[Turn], analysed: bool, sin2: f64, right: Vec3) -> [f64; 4] {
+    let (first, rest) = direct.split_at(usize::from(analysed));
+    let (mirror, between) = rest.split_last().expect("a chain ends with a mirror");
+    let mut ray = Ray { at: [0.0; 3], travels: [0.0, 0.0, -1.0], plane: [1.0, 0.0, 0.0] };
+    if let [first] = first {
+        let (sin, cos) = POLARISER.atan().sin_cos();
+        ray.reflect(sin, cos, first.by);
+        ray.turn(45.0);
+    }
+    // Four turns each.
+    let mut walk = Walk { sin2, last: between.len() / 2 - 1, orders: Vec::new() };
+    walk.step(ray, (0, true), &[], 1.0, 8);
+    assert_eq!(walk.orders.iter().map(|(turns, _)| turns.len()).min(), Some(between.len()), "the direct path");
+    let mut stokes = [0.0; 4];
+    for (turns, share) in walk.orders {
+        let path = [first, &turns[..], &[*mirror]].concat();
+        let order = stokes_along(&path, right);
+        (0..4).for_each(|i| stokes[i] += share * order[i]);
+    }
+    stokes
 }
 
 pub(super) fn truths() -> Vec<Truth> {
@@ -264,6 +293,8 @@ pub(super) fn truths() -> Vec<Truth> {
         .or_else("total reflection without its phase", malus(0.0)),
     );
     list.push(two_rhombs_between_crossed_mirrors(malus(0.0), sin2));
+    let beside = companions::truths(&list, brewster, sin2);
+    list.extend(beside);
     list
 }
 
@@ -292,20 +323,7 @@ fn two_rhombs_between_crossed_mirrors(parallel: f64, sin2: f64) -> Truth {
          angles, goes through rhombs more often: each passage multiplies by z, whose phase is what s gets behind p.",
     )
     .confirmed("tracing the electric field along every path of at most eight reflections at faces", 1e-9, move || {
-        // Between the mirrors next to the eye and next to the lamp.
-        let [first, between @ .., last] = &direct[..] else { unreachable!("a chain of four pieces") };
-        let mut ray = Ray { at: [0.0; 3], travels: [0.0, 0.0, -1.0], plane: [1.0, 0.0, 0.0] };
-        let (sin, cos) = POLARISER.atan().sin_cos();
-        ray.reflect(sin, cos, first.by);
-        ray.turn(45.0);
-        let of = |(turns, share): Order| {
-            let path = [&[*first], &turns[..], &[*last]].concat();
-            averaged * share * stokes_along(&path, [1.0, 0.0, 0.0])[0]
-        };
-        let mut walk = Walk { sin2, orders: Vec::new() };
-        walk.step(ray, (0, true), &[], 1.0, 8);
-        assert_eq!(walk.orders.iter().map(|(turns, _)| turns.len()).min(), Some(between.len()), "the direct path");
-        walk.orders.into_iter().map(of).sum()
+        averaged * along_orders(&direct, true, sin2, [1.0, 0.0, 0.0])[0]
     })
     .sees(0.05)
     .or_else("polarisations averaged at each surface", averaged * whole)

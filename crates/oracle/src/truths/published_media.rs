@@ -20,6 +20,7 @@ use crate::transfer::{
 pub(super) fn truths() -> Vec<Truth> {
     let mut list = half_spaces();
     list.extend(half_spaces_in_bands());
+    list.push(clear_in_blue());
     list.extend(half_spaces_in_diffuse_light());
     list.extend([lit_along_the_normal(), lossless_lit_along_the_normal()]);
     list.extend(slabs_in_diffuse_light());
@@ -58,13 +59,30 @@ fn half_spaces_in_bands() -> Vec<Truth> {
     let coloured = json!({ "scattering_per_m": table(ALBEDO), "absorption_per_m": table(1.0 - ALBEDO) });
     let scene =
         slab(100.0, &coloured, 0.5).sky(1.0).film(16, 16).spp(256).set("film", "bands_nm", json!([450, 750, 100]));
-    [0_u32, 2, 3]
+    [0_u32, 1, 2, 3]
         .map(|number| {
             let name = format!("half-space-of-coloured-extinction-about-{}-nanometres", 450 + 100 * number);
             of_half_space(&name, &scene, ALBEDO, 0.5, HalfSpace::new(ALBEDO).plane_albedo(0.5))
                 .reads(Quantity::Band(number))
         })
         .into()
+}
+
+/// Matter that is clear from violet to green, above a black ground: those wavelengths are never scattered, and the others lose nothing by it.
+fn clear_in_blue() -> Truth {
+    const ALBEDO: f64 = 0.9;
+    const DEPTH: f64 = 30.0;
+    let table = |per_m: f64| json!({ "type": "tabulated", "wavelengths_nm": [360, 550, 600, 830], "values": [0, 0, per_m, per_m] });
+    let red = json!({ "scattering_per_m": table(ALBEDO), "absorption_per_m": table(1.0 - ALBEDO) });
+    let scene = dark_below(slab(DEPTH, &red, 1.0).sky(1.0), DEPTH).film(16, 16).spp(256).set(
+        "film",
+        "bands_nm",
+        json!([650, 750, 100]),
+    );
+    let value = HalfSpace::new(ALBEDO).plane_albedo(1.0);
+    of_half_space("half-space-that-is-clear-in-blue", &scene, ALBEDO, 1.0, value)
+        .or_else("a path is scattered by its first wavelength alone, and half of these are clear", 0.5 * value)
+        .reads(Quantity::Band(1))
 }
 
 /// A scene with a slab below z = 0, and a meter that looks at it.
@@ -160,36 +178,62 @@ fn seen_of(depth: f64) -> f64 {
     }
 }
 
-/// Without loss: what comes through of diffuse light.
+/// Diffuse light: what comes through, and where some is absorbed what comes back, too.
 fn slabs_in_diffuse_light() -> Vec<Truth> {
-    [0.1, 0.5, 1.0, 2.0, 5.0, 10.0]
-        .map(|depth| {
-            let scene = dark_below(metered(depth, &medium(1.0, 0.0, &isotropic()), -depth - 0.5, 1.0), depth);
-            let work_out = move || {
-                let slab = Slab::new(depth, 1.0, &[1.0], 1.0);
-                let through = slab.of_diffuse_light().transmitted;
-                let direct = interval(|mu| 2.0 * mu * (-depth / mu).exp(), 0.0, 1.0, 1e-12).value;
-                Expectation::new(PI * through)
-                    .or_else("light that was not scattered alone", PI * direct)
-                    .or_else("what comes back", PI * (1.0 - through))
-                    .or_else("as along the normal", PI * slab.of_beam().transmitted)
-                    .or_else("radiance instead of irradiance", through)
-                    .allows(1e-4, EDGES)
-            };
-            Truth::later(
-                format!("meter-below-a-slab-of-depth-{depth}"),
-                &scene,
-                format!("π times what comes through, by doubling: τ = {depth}, ϖ = 1"),
-                work_out,
-            )
-            .because("A sky of 1 sends diffuse light of the irradiance π into the slab. A meter below it reads what comes through.")
-            .confirmed("the equation for the source function", 1e-4, move || {
-                PI * IsotropicSlab::new(depth, 1.0).of_diffuse_light().transmitted
-            })
-            .sees(seen_of(depth))
-            .no_brighter_than(1.0)
+    let mut list: Vec<Truth> =
+        [0.1, 0.5, 1.0, 2.0, 5.0, 10.0].map(|depth| in_diffuse_light(depth, 1.0, Side::Far)).into();
+    for depth in [1.0, 5.0] {
+        list.extend([Side::Far, Side::Near].map(|side| in_diffuse_light(depth, 0.9, side)));
+    }
+    list
+}
+
+/// The side of a slab that light leaves by: that away from the light, or that of the light.
+#[derive(Clone, Copy, PartialEq)]
+enum Side {
+    Far,
+    Near,
+}
+
+impl Side {
+    fn of(self, fluxes: &Fluxes) -> f64 {
+        if self == Self::Far { fluxes.transmitted } else { fluxes.reflected }
+    }
+}
+
+fn in_diffuse_light(depth: f64, albedo: f64, side: Side) -> Truth {
+    let filled = medium(albedo, 1.0 - albedo, &isotropic());
+    let (height, up) = if side == Side::Far { (-depth - 0.5, 1.0) } else { (0.5, -1.0) };
+    let scene = dark_below(metered(depth, &filled, height, up), depth);
+    let work_out = move || {
+        let slab = Slab::new(depth, albedo, &[1.0], 1.0);
+        let fluxes = slab.of_diffuse_light();
+        let (leaves, other) = (side.of(&fluxes), fluxes.reflected + fluxes.transmitted - side.of(&fluxes));
+        let direct = interval(|mu| 2.0 * mu * (-depth / mu).exp(), 0.0, 1.0, 1e-12).value;
+        let without_scattering = if side == Side::Far { direct } else { 0.0 };
+        Expectation::new(PI * leaves)
+            .or_else("light that was not scattered alone", PI * without_scattering)
+            .or_else("what leaves by the other side", PI * other)
+            .or_else("as along the normal", PI * side.of(&slab.of_beam()))
+            .or_else("radiance instead of irradiance", leaves)
+            .allows(1e-4, EDGES)
+    };
+    let name = match (albedo < 1.0, side) {
+        (false, _) => format!("meter-below-a-slab-of-depth-{depth}"),
+        (true, Side::Far) => format!("meter-below-a-slab-of-depth-{depth}-that-absorbs"),
+        (true, Side::Near) => format!("meter-above-a-slab-of-depth-{depth}-that-absorbs"),
+    };
+    let what = if side == Side::Far { "comes through" } else { "comes back" };
+    Truth::later(name, &scene, format!("π times what {what}, by doubling: τ = {depth}, ϖ = {albedo}"), work_out)
+        .because(match side {
+            Side::Far => "A sky of 1 sends diffuse light of the irradiance π into the slab. A meter below it reads what comes through.",
+            Side::Near => "A sky of 1 sends diffuse light of the irradiance π into the slab. A meter above it reads what comes back.",
         })
-        .into()
+        .confirmed("the equation for the source function", 1e-4, move || {
+            PI * side.of(&IsotropicSlab::new(depth, albedo).of_diffuse_light())
+        })
+        .sees(seen_of(depth))
+        .no_brighter_than(1.0)
 }
 
 /// A beam along the normal: the share that comes back, and the share that comes through.

@@ -1,5 +1,7 @@
 //! Polarisers and retarders, alone and one behind another, before a lamp.
 
+mod companions;
+
 use serde_json::{Value, json};
 
 use super::{
@@ -12,7 +14,11 @@ pub(super) fn truths() -> Vec<Truth> {
     let mut list = polarisers();
     list.extend(retarders());
     list.extend(tilted());
-    list.into_iter().map(|truth| truth.claims(Claim::CarriesPolarisation)).collect()
+    // Beside each those that read the other parameters of its film, so that one render serves all.
+    list.into_iter()
+        .map(|truth| truth.claims(Claim::CarriesPolarisation))
+        .flat_map(companions::with_companions)
+        .collect()
 }
 
 /// The direction in the sheet at this angle from x toward y.
@@ -23,7 +29,8 @@ fn axis(degrees: f64) -> Value {
 
 /// Sheets from the nearest to the farthest, and a lamp of radiance 1 behind them.
 fn scene(sheets: &[Value]) -> Scene {
-    let first = Scene::orthographic([0.0, 0.0, 2.0], [0.0; 3], 0.1).film(16, 16).spp(256);
+    let first =
+        Scene::orthographic([0.0, 0.0, 2.0], [0.0; 3], 0.1).film(16, 16).spp(256).set("film", "stokes", json!(true));
     let lamp = level_square([0.0, 0.0, -1.0], 1.0, true);
     sheets
         .iter()

@@ -5,16 +5,21 @@ use std::f64::consts::TAU;
 use serde_json::{Value, json};
 
 use super::{
-    Claim, Quantity, Truth,
-    scene::{Scene, black, glass, level_square},
+    Claim, Quantity, Truth, companions,
+    companions::Light,
+    scene::{Scene, black, conductor, disk, glass, level_square},
 };
 use crate::laws::fresnel_exact;
+use crate::vector::{Vec3, scale};
 
 pub(super) fn truths() -> Vec<Truth> {
     let mut list = polariser();
     list.extend(retarder());
     list.extend(reflection());
-    list.into_iter().map(|truth| truth.claims(Claim::CarriesPolarisation)).collect()
+    let mut list: Vec<Truth> = list.into_iter().map(|truth| truth.claims(Claim::CarriesPolarisation)).collect();
+    list.extend(metal());
+    list.extend(companions::truths());
+    list
 }
 
 pub(super) const PARAMETERS: [Quantity; 3] = [Quantity::Stokes1, Quantity::Stokes2, Quantity::Stokes3];
@@ -161,6 +166,55 @@ fn reflection() -> Vec<Truth> {
             _ => truth,
         })
         .collect()
+}
+
+/// Light at 45° to the plane of incidence, reflected at 60° by a metal whose phases show in S₂ and S₃.
+fn metal() -> Vec<Truth> {
+    let (n, k, cos) = (0.6_f64, 2.4_f64, 0.5_f64);
+    let (half, sin) = (std::f64::consts::FRAC_1_SQRT_2, (1.0 - cos * cos).sqrt());
+    let toward: Vec3 = [0.0, sin, cos];
+    // The camera's right is x, which is s; upward is p. Seen against the light that arrives, p is on the other side.
+    let scene = Scene::orthographic([0.0, -2.0 * sin, 2.0 * cos], [0.0; 3], 0.1)
+        .up([0.0, cos, sin])
+        .film(4, 4)
+        .spp(4096)
+        .set("film", "stokes", json!(true))
+        .object(level_square([0.0; 3], 10.0, true), conductor(n, k))
+        .thing(json!({
+            "shape": disk(toward, toward, 1.0),
+            "material": { "type": "polariser", "axis": [half, -half * cos, half * sin] },
+        }))
+        .lamp(disk(scale(1.5, toward), scale(-1.0, toward), 2.0), black(), 1.0, "front");
+    // q² = (n + ik)² − sin²θ, q = a + ib.
+    let (re, im) = (n * n - k * k - sin * sin, 2.0 * n * k);
+    let a = (0.5 * (re.hypot(im) + re)).sqrt();
+    let b = 0.5 * im / a;
+    let over = |[x, y]: [f64; 2], [u, v]: [f64; 2]| {
+        let square = u * u + v * v;
+        [(x * u + y * v) / square, (y * u - x * v) / square]
+    };
+    let (m_re, m_im) = ((n * n - k * k) * cos, im * cos);
+    let (s, p) = (over([cos - a, -b], [cos + a, b]), over([m_re - a, m_im - b], [m_re + a, m_im + b]));
+    let square = |[x, y]: [f64; 2]| x * x + y * y;
+    let product = [s[0] * p[0] + s[1] * p[1], s[1] * p[0] - s[0] * p[1]];
+    let base = Truth::new("polarised-light-on-metal", &scene, 0.0, "").claims(Claim::CarriesPolarisation);
+    let light = Light {
+        stokes: [0.25 * (square(s) - square(p)), 0.5 * product[0], 0.5 * product[1]],
+        formula: "¼(|r_s|² − |r_p|²), ½ Re r_s r_p*, ½ Im r_s r_p*",
+        because: "Behind a polariser at 45° to the plane of incidence s and p have equal amplitudes. The metal multiplies them by r_s and r_p: \
+                  S₂ + iS₃ = 2E_xE_y* in fields that run as e^(−iωt).",
+        mistakes: &[
+            ("a perfect conductor", [0.0, -0.5, 0.0]),
+            ("reflected without phases", [0.25 * (square(s) - square(p)), -0.5 * (square(s) * square(p)).sqrt(), 0.0]),
+        ],
+        sees: 0.01,
+        how: ("the field over a period, r_p from r_p/r_s = (sin² θ − q cos θ)/(sin² θ + q cos θ)", 1e-6),
+    };
+    companions::companions(&base, &light, move || {
+        let r_s = (((a - cos).powi(2) + b * b) / ((a + cos).powi(2) + b * b)).sqrt();
+        let ratio = over([sin * sin - a * cos, -b * cos], [sin * sin + a * cos, b * cos]);
+        stokes_of(|phase| [half * r_s * phase.cos(), half * r_s * (ratio[0] * phase.cos() + ratio[1] * phase.sin())])
+    })
 }
 
 #[cfg(test)]
