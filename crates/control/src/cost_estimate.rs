@@ -315,6 +315,22 @@ mod tests {
         }
     }
 
+    /// Independent numbers reach an error of 1/100 of E = 1/√n with 10,000. Pilots that saw E off by up to 1.96 standard errors, which are 95 of
+    /// 100, have that in their interval, and no others.
+    #[test]
+    fn intervals_hold_ninety_five_pilots_of_a_hundred() {
+        let uncertainty = 0.05;
+        let holds = |standard_errors: f64| {
+            let off = (2.0 * standard_errors * uncertainty).exp();
+            let seen: Vec<PilotPoint> =
+                points(|n| off / n).into_iter().map(|point| PilotPoint { uncertainty, ..point }).collect();
+            let [low, high] = cost_estimate(&seen, 0.01, SamplerKind::Independent, 4).samples_interval;
+            (low..=high).contains(&10_000.0)
+        };
+        assert!([-1.95, -1.5, 0.0, 1.5, 1.95].into_iter().all(holds));
+        assert!(![-1.97, 1.97].into_iter().any(holds));
+    }
+
     #[test]
     fn a_picture_without_noise_costs_the_fewest_samples() {
         let cost_estimate = cost_estimate(&points(|_| 0.0), 0.01, SamplerKind::Sobol, 4);

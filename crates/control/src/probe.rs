@@ -149,3 +149,48 @@ impl<'a> Probe<'a> {
         });
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use etalon_transport::{Control, Extent};
+
+    /// A floor below a large lamp: what a sample sees varies with its numbers, and is never the same twice.
+    fn lit_floor() -> Prepared {
+        let json = r#"{"etalon": 1, "film": {"width": 8, "height": 8},
+            "camera": {"type": "perspective", "position_m": [3, 3, 0], "look_at_m": [0, 0, 0], "vertical_fov_deg": 5},
+            "materials": {"white": {"type": "lambert", "reflectance": 1}, "black": {"type": "black"}},
+            "objects": [
+                {"material": "white", "shape": {"type": "disk", "center_m": [0, 0, 0], "normal": [0, 1, 0], "radius_m": 1}},
+                {"material": "black", "emission": {"radiance": 1},
+                  "shape": {"type": "disk", "center_m": [0, 4, 0], "normal": [0, -1, 0], "radius_m": 2}}],
+            "integrator": {"light_sampling": "light", "max_depth": 2, "sampler": "independent"}}"#;
+        etalon_transport::prepare(&etalon_scene::parse(json, "floor").unwrap_or_else(|e| panic!("{e:?}")).0).unwrap()
+    }
+
+    /// None of the first samples of a pilot or an exploration is one of another of them, or one of the picture's first.
+    #[test]
+    fn probes_have_samples_of_their_own() {
+        let prepared = lit_floor();
+        let rect = prepared.whole(None).rect;
+        let of_probe = |purpose: Purpose, sample: u32| -> Vec<f64> {
+            let mut probe = Probe::new(&prepared, purpose, Some(1)).unwrap();
+            probe.add(rect.pixels());
+            probe.trace(0, |_, _| sample..sample + 1, &|_| ());
+            probe.seen().map(|seen| seen.pixel.xyz()[1]).collect()
+        };
+        let of_picture = |sample: u32| -> Vec<f64> {
+            let extent = Extent { rect, samples: sample..sample + 1, threads: Some(1) };
+            let film = prepared.render(&extent, &|_| Control::Continue).unwrap();
+            film.pixels().map(|pixel| pixel.xyz()[1]).collect()
+        };
+        let probes = [Purpose::Pilot, Purpose::Exploration].map(|purpose| (0..8).map(move |k| (purpose, k)));
+        let probes = probes.into_iter().flatten().map(|(purpose, sample)| of_probe(purpose, sample));
+        let all: Vec<Vec<f64>> = probes.chain((0..32).map(of_picture)).collect();
+        for pixel in 0..rect.area() as usize {
+            let mut seen: Vec<f64> = all.iter().map(|samples| samples[pixel]).collect();
+            seen.sort_unstable_by(f64::total_cmp);
+            assert!(seen[0] > 0.0 && seen.windows(2).all(|pair| pair[0] < pair[1]), "{pixel}: {seen:?}");
+        }
+    }
+}

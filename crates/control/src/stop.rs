@@ -10,6 +10,7 @@ use crate::pilot::Pilot;
 use crate::sample_allocation::SampleAllocation;
 use etalon_transport::{Control, Counters, Film, PixelRect, Prepared, ThreadError, TileSums};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// What a render may cost, or must reach. Without any limit it would not end.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -275,15 +276,18 @@ pub fn render_canvas(
     watch.planned(canvas.paths(&|tile| settled.samples_of(tile, samples, replicates)), predicted.as_ref());
 
     // What a tile has beyond the stage that all have reached is not rendered again.
-    let first = if settled.allocation.is_some() { 0 } else { canvas.samples()[0] };
-    let (start, mut done) = (clock(), first);
+    let mut done = if settled.allocation.is_some() { 0 } else { canvas.samples()[0] };
+    let (start, traced) = (clock(), AtomicU64::new(0));
     while done < samples && watch.control() == Control::Continue {
+        // Samples a pixel that this run has rendered, in the mean: what a picture had before does not tell how fast it goes on.
+        let rendered = traced.load(Ordering::Relaxed) as f64 / canvas.area() as f64;
         // As many again as there are, until that is a part of the whole: the error is known after each pass.
-        let mut pass = done.max(replicates).min(samples - done);
+        let is_untimed = limits.seconds.is_some() && rendered == 0.0;
+        let mut pass = if is_untimed { replicates } else { done.max(replicates) }.min(samples - done);
         let mut end = samples;
-        if let (Some(seconds), true) = (limits.seconds, done > first) {
+        if let (Some(seconds), false) = (limits.seconds, is_untimed) {
             let now = clock();
-            let affordable = USE_OF_TIME * (seconds - now) / ((now - start) / f64::from(done - first));
+            let affordable = USE_OF_TIME * (seconds - now) / ((now - start) / rendered);
             // Whole rounds of replicates, so that all weigh alike.
             let affordable = affordable.max(0.0) as u32 / replicates * replicates;
             if affordable == 0 {
@@ -296,6 +300,7 @@ pub fn render_canvas(
         pass = pass.min((end / PASSES).max(WORTH_A_PASS).next_multiple_of(replicates));
         let target = |rect| settled.samples_of(rect, done + pass, replicates);
         canvas.advance(prepared, &target, threads, &|piece| {
+            traced.fetch_add(piece.counters.paths, Ordering::Relaxed);
             watch.work(piece.counters);
             watch.tile(piece.rect, piece.sums);
             watch.control()

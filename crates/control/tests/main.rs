@@ -4,3 +4,4 @@ mod canvas;
 mod dark;
 mod source_hash;
 mod stopping;
+mod truths;

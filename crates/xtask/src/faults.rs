@@ -1,10 +1,13 @@
-//! The catalogue of faults keeps up with the sources: each names a text that its file has once.
+//! The lists of faults keep up with the sources: each fault names a text that its file has once.
 
 use std::fs;
 
 use crate::root;
 
-/// A fault of `tests/faults/faults.toml`.
+/// The lists of `tests/faults`, and how many faults each has at least.
+const LISTS: [(&str, usize); 3] = [("faults", 180), ("first", 40), ("second", 40)];
+
+/// A fault of a list.
 #[derive(Default)]
 struct Fault {
     name: String,
@@ -12,7 +15,7 @@ struct Fault {
     old: String,
 }
 
-/// The faults of the catalogue, whose strings stand between single or double quotes, or between three single ones over some lines.
+/// The faults of a list, whose strings stand between single or double quotes, or between three single ones over some lines.
 fn faults(text: &str) -> Vec<Fault> {
     let mut faults = Vec::new();
     for block in text.split("[[fault]]\n").skip(1) {
@@ -31,16 +34,19 @@ fn faults(text: &str) -> Vec<Fault> {
 #[test]
 fn each_fault_names_a_text_that_its_file_has_once() {
     let root = root();
-    let text = fs::read_to_string(root.join("tests/faults/faults.toml")).expect("the catalogue is there");
-    let faults = faults(&text);
-    assert!(faults.len() > 180, "{}", faults.len());
     let mut wrong = Vec::new();
-    for Fault { name, file, old } in faults {
-        let source = fs::read_to_string(root.join(&file)).unwrap_or_default();
-        let marks = old.matches('«').count() + old.matches('»').count();
-        let count = source.matches(&old.replace(['«', '»'], "")).count();
-        if count != 1 || ![0, 2].contains(&marks) {
-            wrong.push(format!("{name}: its text is {count} times in {file}, with {marks} marks"));
+    for (list, least) in LISTS {
+        let path = root.join(format!("tests/faults/{list}.toml"));
+        let text = fs::read_to_string(&path).expect("the list is there");
+        let faults = faults(&text);
+        assert!(faults.len() >= least, "{list}.toml has {} faults", faults.len());
+        for Fault { name, file, old } in faults {
+            let source = fs::read_to_string(root.join(&file)).unwrap_or_default();
+            let marks = old.matches('«').count() + old.matches('»').count();
+            let count = source.matches(&old.replace(['«', '»'], "")).count();
+            if count != 1 || ![0, 2].contains(&marks) {
+                wrong.push(format!("{list}.toml: {name}: its text is {count} times in {file}, with {marks} marks"));
+            }
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
