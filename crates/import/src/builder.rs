@@ -2,24 +2,23 @@
 
 mod files;
 mod groups;
+mod lamps;
+mod place;
 mod studio;
 
 use std::cell::RefCell;
 use std::collections::{HashMap, HashSet};
 
-use etalon_scene::linear::is_similarity;
 use etalon_scene::{Encoding, Mesh, NamedFile, shortened};
 use glam::{DAffine3, DVec3};
 use serde_json::{Map, Value, json};
 
 use crate::budget::{Budget, FreshNames};
 use crate::matrix::steps;
-use crate::medium::exchange_sides;
-use crate::relief::turn_over;
-use crate::sides::change_sides;
 use crate::{Imported, LeftOut, Loss, TakenOver};
 use files::KnownImage;
 pub(crate) use groups::Outside;
+pub(crate) use place::Placed;
 use studio::area;
 
 /// Most things that are listed as not honoured; the rest is counted.
@@ -61,8 +60,10 @@ pub(crate) struct Builder<'a> {
     pub(crate) files: Vec<NamedFile>,
     /// The names of those that are meshes of which no triangle has an area.
     flat_meshes: HashSet<String>,
-    /// Names of files by what they were made from.
+    /// Names of files by the files of the model that they are copies of.
     pub(crate) known: HashMap<String, Option<String>>,
+    /// Names of files that are made here, by what they hold.
+    made: HashMap<String, String>,
     /// Images by their file and how its numbers stand: what is known of each, or why there is none.
     images: HashMap<(String, Encoding), Result<KnownImage, String>>,
     budget: Budget,
@@ -89,23 +90,6 @@ pub(crate) struct Builder<'a> {
 /// The two corners of a box around things, if there are any.
 type Bounds = Option<[[f64; 3]; 2]>;
 
-/// An object that is to be placed.
-pub(crate) struct Placed {
-    pub(crate) name: String,
-    /// A shape of the format.
-    pub(crate) shape: Value,
-    /// Two corners of a box around it, before its transform.
-    pub(crate) reach: [[f64; 3]; 2],
-    pub(crate) material: Value,
-    pub(crate) emission: Option<Value>,
-    pub(crate) opacity: f64,
-    /// Further keys of the object.
-    pub(crate) detail: Map<String, Value>,
-    pub(crate) map: DAffine3,
-    /// Whether its normals point the other way.
-    pub(crate) flipped: bool,
-}
-
 impl<'a> Builder<'a> {
     pub(crate) fn new(
         near: &'a dyn Fn(&str) -> Result<Vec<u8>, String>,
@@ -130,6 +114,7 @@ impl<'a> Builder<'a> {
             files: Vec::new(),
             flat_meshes: HashSet::new(),
             known: HashMap::new(),
+            made: HashMap::new(),
             images: HashMap::new(),
             budget: Budget::default(),
             material_names: FreshNames::default(),
@@ -214,82 +199,6 @@ impl<'a> Builder<'a> {
             self.reach(map.transform_point3((*v).into()));
         }
         self.objects.push(object);
-    }
-
-    /// Adds an object. One whose transform flattens it is left out; a round one that is stretched becomes an instance, which
-    /// may be, unless it emits.
-    ///
-    /// # Errors
-    /// If there are more objects than a scene can hold.
-    pub(crate) fn place(&mut self, placed: &Placed, place: &str) -> Result<(), String> {
-        let determinant = placed.map.matrix3.determinant();
-        if determinant == 0.0 || !determinant.is_finite() {
-            self.leave_out(place, "it is flattened by its transform, and left out");
-            return Ok(());
-        }
-        if placed.shape["file"].as_str().is_some_and(|file| self.flat_meshes.contains(file)) {
-            self.leave_out(place, WITHOUT_AREA);
-            return Ok(());
-        }
-        let mut material = placed.material.clone();
-        let mut emission = placed.emission.clone();
-        if placed.flipped {
-            // Which side is which matters to a dielectric and to what shines on one side.
-            let own = material.as_str().and_then(|name| self.materials.get(name)).cloned().unwrap_or(material.clone());
-            if own["type"] == "dielectric" {
-                material = own.clone();
-                material["interior"] = own.get("exterior").cloned().unwrap_or(json!(1));
-                material["exterior"] = own["interior"].clone();
-                exchange_sides(&mut material, self.medium.as_ref());
-            }
-            let mut turned = own.clone();
-            change_sides(&mut turned, &|sides| match sides {
-                "front" => "back",
-                "back" => "front",
-                _ => "both",
-            });
-            if turned != own {
-                material = turned;
-            }
-            if let Some(emission) = &mut emission {
-                emission["sides"] = json!(if emission["sides"] == "back" { "front" } else { "back" });
-            }
-        }
-        let mut object = json!({ "name": placed.name, "shape": placed.shape, "material": material });
-        if placed.opacity < 1.0 {
-            object["opacity"] = json!(placed.opacity);
-        }
-        let mut detail = placed.detail.clone();
-        if placed.flipped {
-            turn_over(&mut detail);
-        }
-        for (key, value) in detail {
-            object[key] = value;
-        }
-        let round = matches!(placed.shape["type"].as_str(), Some("sphere" | "disk" | "cylinder"));
-        self.spend(&object, place)?;
-        let stretched = round && !is_similarity(&placed.map.matrix3);
-        if stretched && emission.is_some() {
-            self.leave_out(place, "its emission is left out: an emitting shape of this kind cannot be stretched");
-        } else if let Some(emission) = emission {
-            self.spend(&emission, place)?;
-            object["emission"] = emission;
-            self.emits = true;
-        }
-        if stretched {
-            let group = self.group_name(&placed.name);
-            self.keep_grids(&mut object, &placed.map.inverse());
-            self.groups.insert(group.clone(), json!({ "objects": [object] }));
-            self.instances.push(json!({ "name": placed.name, "group": group, "transform": steps(&placed.map) }));
-        } else {
-            let transform = steps(&placed.map);
-            if !transform.is_null() {
-                object["transform"] = transform;
-            }
-            self.objects.push(object);
-        }
-        self.enclose(placed.reach, &placed.map);
-        Ok(())
     }
 
     /// Fills the space outside of all bodies. All say the same: what is said first holds.

@@ -276,13 +276,26 @@ fn read(kind: &str, bytes: &[u8], options: &Options, builder: &mut Builder<'_>) 
         }
         "obj" => obj::import(bytes, builder),
         "gltf" | "glb" => gltf::import(bytes, options, builder),
-        "xml" => mitsuba::import(bytes, &options.parameters, builder),
-        "pbrt" => pbrt::import(bytes, builder),
+        "xml" => check_name(kind, bytes).and_then(|()| mitsuba::import(bytes, &options.parameters, builder)),
+        "pbrt" => check_name(kind, bytes).and_then(|()| pbrt::import(bytes, builder)),
         other => Err(format!(
             "models of the kind .{other} cannot be read. Export the model as glTF (.glb), or as .gltf, .obj or .ply. Scenes of Mitsuba 3 \
              (.xml) and pbrt-v4 (.pbrt) can be read too"
         )),
     }
+}
+
+/// Fails if a scene of Mitsuba has the name of one of pbrt, or the other way round.
+fn check_name(kind: &str, bytes: &[u8]) -> Result<(), String> {
+    let start = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
+    let is_xml = start.starts_with(b"<");
+    if kind == "pbrt" && is_xml {
+        return Err("it is XML, as scenes of Mitsuba are, and no scene of pbrt: name it .xml".to_owned());
+    }
+    if kind == "xml" && !is_xml && bytes.windows(10).any(|word| word == b"WorldBegin") {
+        return Err("it is a scene of pbrt, and no scene of Mitsuba: name it .pbrt".to_owned());
+    }
+    Ok(())
 }
 
 /// A colour as a reflectance of the format: a number if it is grey. Channels are brought into [0, 1].

@@ -11,6 +11,27 @@ pub(crate) fn shape(plugin: &str) -> String {
     format!("the shape \"{plugin}\" ({kind}) is not seen and has no shadow")
 }
 
+/// What stands for a material.
+pub(crate) fn material(plugin: &str) -> String {
+    let kind = match plugin {
+        "hair" => "fibres",
+        "measured_polarized" => "measured, with polarisation",
+        "coating" | "roughcoating" => "a coat over another",
+        "difftrans" => "a sheet that scatters light to its back",
+        "irawan" => "woven cloth",
+        "hk" => "a layer that scatters light",
+        "phong" | "ward" => "a glossy surface",
+        "mixturebsdf" => "a mixture",
+        _ => return format!("the material \"{plugin}\" is not known: it becomes grey"),
+    };
+    format!("the material \"{plugin}\" ({kind}) cannot be read: grey that scatters half of the light is used")
+}
+
+/// What a body lacks into which light should go.
+pub(crate) fn subsurface(plugin: &str) -> String {
+    format!("the subsurface scattering \"{plugin}\" is left out: the surface alone reflects light")
+}
+
 pub(crate) fn emitter(plugin: &str) -> String {
     match plugin {
         "sunsky" | "timed_sunsky" | "sky" | "sun" => {

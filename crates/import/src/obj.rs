@@ -1,10 +1,13 @@
 //! OBJ and MTL.
 
+mod colours;
+mod map;
+
 use std::collections::HashMap;
 use std::path::Path;
 
 use etalon_scene::LEAST_ALPHA;
-use etalon_scene::mesh::{Cut, ObjMaterial, read_obj};
+use etalon_scene::mesh::{Cut, ObjMaterial, Part, read_obj};
 use serde_json::{Value, json};
 
 use crate::number::has_image;
@@ -16,9 +19,16 @@ pub(crate) fn import(bytes: &[u8], builder: &mut Builder<'_>) -> Result<(), Stri
         let name = path.to_string_lossy().replace('\\', "/");
         near(&name).map_err(|why| format!("the material library \"{name}\" cannot be read: {why}"))
     };
-    let file = read_obj(bytes, Cut::Outline, library).map_err(|error| error.to_string())?;
+    let mut file = read_obj(bytes, Cut::Outline, library).map_err(|error| error.to_string())?;
+    file.smooth_groups();
     for missing in &file.missing_libraries {
         builder.leave_out("mtllib", missing.clone());
+    }
+    for name in &file.unknown_materials {
+        builder.approximate(format!("usemtl {name}"), "no library has this material: it becomes grey");
+    }
+    for what in &file.left_out {
+        builder.leave_out("faces", what.clone());
     }
     for material in &file.materials {
         let value = self::material(material, builder);
@@ -28,27 +38,34 @@ pub(crate) fn import(bytes: &[u8], builder: &mut Builder<'_>) -> Result<(), Stri
     // Of those with the same name the first counts.
     let glows: HashMap<&str, Option<[f32; 3]>> =
         file.materials.iter().rev().map(|material| (material.name.as_str(), material.emissive)).collect();
-    let opacities: HashMap<&str, f64> =
-        file.materials.iter().rev().filter_map(|material| Some((material.name.as_str(), opacity(material)?))).collect();
+    let opacities: HashMap<&str, Option<f64>> =
+        file.materials.iter().rev().map(|material| (material.name.as_str(), opacity(material))).collect();
     for (i, part) in file.parts.into_iter().enumerate() {
-        let name = part.name.unwrap_or_else(|| format!("faces {i}"));
-        let named = part.material.filter(|name| builder.materials.contains_key(name));
+        let Part { name, material, mut mesh, left_out, .. } = part;
+        let name = name.unwrap_or_else(|| format!("faces {i}"));
+        let place = format!("group \"{name}\"");
+        for what in left_out {
+            builder.leave_out(&place, what);
+        }
+        let named = material.filter(|name| builder.materials.contains_key(name));
         let name_of = named.clone().unwrap_or_else(|| plain.clone());
         if named.is_none() {
             let grey = json!({ "type": "lambert", "reflectance": 0.8 });
             builder.materials.entry(plain.clone()).or_insert(grey);
         }
         let mut material = json!(name_of);
-        if part.mesh.uvs.is_empty() && has_image(&builder.materials[&name_of]) {
-            builder
-                .leave_out(format!("group \"{name}\""), "it has no texture coordinates for the image of its material");
+        if mesh.uvs.is_empty() && has_image(&builder.materials[&name_of]) {
+            builder.leave_out(&place, "it has no texture coordinates for the image of its material");
             material = json!({ "type": "lambert", "reflectance": 0.8 });
         }
         let glow = named.as_ref().and_then(|name| *glows.get(name.as_str())?);
         let emission = glow.map(|rgb| rgb.map(f64::from)).filter(|rgb| rgb.iter().any(|v| *v > 0.0)).map(emission);
-        let share = named.as_ref().and_then(|name| opacities.get(name.as_str()));
+        let share = named.as_ref().and_then(|name| *opacities.get(name.as_str())?);
         let opacity = share.map(|share| ("opacity".to_owned(), json!(share)));
-        builder.add_mesh(&name, part.mesh, &material, (emission, &opacity.into_iter().collect()))?;
+        if !mesh.colours.is_empty() {
+            material = colours::painted(material, named.is_some(), &mut mesh, &place, builder)?;
+        }
+        builder.add_mesh(&name, mesh, &material, (emission, &opacity.into_iter().collect()))?;
     }
     Ok(())
 }
@@ -88,7 +105,7 @@ fn material(material: &ObjMaterial, builder: &mut Builder<'_>) -> Value {
     }
     let is_one = |value: &str| value.split_whitespace().all(|number| number.parse() == Ok(1.0));
     for (key, value) in material.unknown_param.iter().collect::<std::collections::BTreeMap<_, _>>() {
-        if !(matches!(key.as_str(), "Ke" | "Pr" | "Pm") || key == "Tf" && is_one(value)) {
+        if !(matches!(key.as_str(), "Pr" | "Pm") || key == "Tf" && is_one(value)) {
             builder.leave_out(&place, format!("{key} is ignored"));
         }
     }
@@ -116,9 +133,12 @@ fn material(material: &ObjMaterial, builder: &mut Builder<'_>) -> Value {
     if diffuse.iter().any(|v| !(0.0..=1.0).contains(v)) {
         builder.approximate(&place, format!("Kd {diffuse:?} is not a reflectance: it is clamped to 0 to 1"));
     }
-    let laid = material.diffuse_texture.as_ref().and_then(|words| image(words, &place, builder));
+    let laid = material.diffuse_texture.as_ref().and_then(|words| map::image(words, &place, builder));
     let colour = match laid {
-        Some(image) => json!({ "type": "image", "file": image, "factor": diffuse.map(|v| v.clamp(0.0, 1.0)) }),
+        Some(mut image) => {
+            image["factor"] = json!(diffuse.map(|v| v.clamp(0.0, 1.0)));
+            image
+        }
         None => reflectance(diffuse),
     };
     let Some(gloss) = gloss else { return json!({ "type": "lambert", "reflectance": colour }) };
@@ -191,31 +211,16 @@ fn gloss_of_phong(material: &ObjMaterial, value: &mut Value) {
     value["distribution"] = json!("beckmann");
 }
 
-/// The name in the scene of the image that `map_Kd` names.
-fn image(words: &str, place: &str, builder: &mut Builder<'_>) -> Option<String> {
-    let words = words.replace('\\', "/");
-    let mut name = words.trim();
-    if name.starts_with('-') {
-        builder.leave_out(place, "the options of map_Kd are ignored");
-        name = name.rsplit(char::is_whitespace).next().unwrap_or(name);
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn of_materials_with_the_same_name_the_first_holds() {
+        let near = |name: &str| match name {
+            "a.mtl" => Ok(b"newmtl a\nKd 1 0 0\nnewmtl a\nKd 1 0 0\nd 0.25\n".to_vec()),
+            other => Err(format!("there is no {other}")),
+        };
+        let model = b"mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n";
+        let text = crate::import_bytes("obj", model, &near, "", "a.obj").unwrap().text;
+        assert!(!text.contains("\"opacity\""), "{text}");
     }
-    if let Some(known) = builder.known.get(name) {
-        return known.clone();
-    }
-    let kind = super::extension(Path::new(name));
-    let added = match (builder.near)(name) {
-        Ok(bytes) if matches!(kind.as_str(), "png" | "jpg" | "jpeg" | "bmp" | "exr" | "hdr") => {
-            Some(builder.add_file("image", &kind, bytes))
-        }
-        Ok(_) => {
-            builder.leave_out(place, format!("map_Kd \"{name}\" is not PNG, JPEG, BMP, EXR or HDR"));
-            None
-        }
-        Err(why) => {
-            builder.leave_out(place, format!("map_Kd \"{name}\" cannot be read: {why}"));
-            None
-        }
-    };
-    builder.known.insert(name.to_owned(), added.clone());
-    added
 }

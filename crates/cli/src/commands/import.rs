@@ -186,7 +186,7 @@ pub(crate) fn run(args: ImportArgs) -> Outcome {
         let of = |loss| imported.left_out.iter().filter(|l| l.loss == loss).count();
         return Err(Failure::run(miette!(
             code = "not-exact",
-            "of the model {} things are approximated and {} are left out; the scene is written",
+            "the scene is written, but it is not exact: approximated {}, left out {}",
             of(Loss::Approximated),
             of(Loss::LeftOut)
         )));

@@ -5,10 +5,21 @@ use etalon_import::{Moment, Options, import_bytes_with};
 /// Two by two texels.
 const PNG: &[u8] = include_bytes!("../../../scene/fuzz/seeds/image/chequers.png");
 
-/// Imports a model of a kind from arbitrary bytes. Files that it names hold the bytes themselves, so that what reads them meets
-/// arbitrary bytes too; but for those named .png, so that what is made of images is met.
+/// What parts a model from the file that it names. It is no part of any text in UTF-8.
+const END_OF_MODEL: u8 = 0xff;
+
+/// A model and the bytes of the files that it names. Of the kinds that are text they follow the first 0xff, as in the seeds; without one, and of
+/// the other kinds, they are the bytes of the model itself.
+fn parts<'a>(kind: &str, bytes: &'a [u8]) -> (&'a [u8], &'a [u8]) {
+    let end = bytes.iter().position(|byte| *byte == END_OF_MODEL).filter(|_| !matches!(kind, "glb" | "ply"));
+    end.map_or((bytes, bytes), |end| (&bytes[..end], &bytes[end + 1..]))
+}
+
+/// Imports a model of a kind from arbitrary bytes. Files that it names are arbitrary bytes too, but for those named .png, so that what is made of
+/// images is met.
 pub fn import(kind: &str, bytes: &[u8]) {
-    let near = |name: &str| Ok(if name.ends_with(".png") { PNG } else { bytes }.to_vec());
+    let (bytes, named) = parts(kind, bytes);
+    let near = |name: &str| Ok(if name.ends_with(".png") { PNG } else { named }.to_vec());
     // As it stands, and, of what can move, as it moves.
     let moment = Moment { animation: None, opens_s: 0.25, shutter_s: 0.5 };
     let moves = matches!(kind, "gltf" | "glb");

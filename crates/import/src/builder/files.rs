@@ -31,7 +31,7 @@ impl Builder<'_> {
         name
     }
 
-    /// Adds a mesh as a file; `None`, and a note, if it has no triangles.
+    /// Adds a mesh as a file, and gives its name; if no triangle has an area, that is kept for the objects made of it.
     pub(crate) fn mesh_file(&mut self, mesh: &Mesh) -> String {
         let mut bytes = Vec::with_capacity(40 * mesh.vertices.len() + 13 * mesh.triangles.len());
         // Writing to memory cannot fail.
@@ -45,8 +45,13 @@ impl Builder<'_> {
 
     /// The bytes of a file that the model names.
     pub(crate) fn bytes_of(&self, name: &str, place: &str) -> Result<Vec<u8>, String> {
+        self.named_bytes(name).map_err(|why| format!("{place}: {why}"))
+    }
+
+    /// The same, for a message that has its place.
+    fn named_bytes(&self, name: &str) -> Result<Vec<u8>, String> {
         let name = name.replace('\\', "/");
-        (self.near)(&name).map_err(|why| format!("{place}: \"{name}\" cannot be read: {why}"))
+        (self.near)(&name).map_err(|why| format!("\"{name}\" cannot be read: {why}"))
     }
 
     /// Adds a copy of a file that the model names, once, and gives the name that the scene has for it.
@@ -70,7 +75,7 @@ impl Builder<'_> {
         let known = match self.images.get(&key) {
             Some(known) => known.clone(),
             None => {
-                let read = self.read_image(name, encoding, place);
+                let read = self.read_image(name, encoding);
                 self.images.insert(key, read.clone());
                 read
             }
@@ -90,7 +95,7 @@ impl Builder<'_> {
     /// Adds an image of the square roots of another's linear channels, in steps of 1/65535, once. It is linear.
     pub(crate) fn root_of_image(&mut self, file: &str, encoding: Encoding, place: &str) -> Option<String> {
         let key = format!("the roots of {file}, {encoding:?}");
-        if let Some(Some(known)) = self.known.get(&key) {
+        if let Some(known) = self.made.get(&key) {
             return Some(known.clone());
         }
         let bytes = &self.files.iter().find(|known| known.name == file)?.bytes;
@@ -104,12 +109,12 @@ impl Builder<'_> {
         let mut png = Cursor::new(Vec::new());
         roots.write_to(&mut png, ImageFormat::Png).ok()?;
         let name = self.add_file("root", "png", png.into_inner());
-        self.known.insert(key, Some(name.clone()));
+        self.made.insert(key, name.clone());
         Some(name)
     }
 
-    fn read_image(&mut self, name: &str, encoding: Encoding, place: &str) -> Result<KnownImage, String> {
-        let bytes = self.bytes_of(name, place)?;
+    fn read_image(&mut self, name: &str, encoding: Encoding) -> Result<KnownImage, String> {
+        let bytes = self.named_bytes(name)?;
         let (image, left_out) = Image::decode(&bytes, encoding)?;
         let file = match self.known.get(name) {
             Some(Some(file)) => file.clone(),

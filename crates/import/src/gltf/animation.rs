@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use gltf::animation::{Interpolation, Property};
 use gltf::json::validation::Checked;
-use gltf::{Gltf, Node};
+use gltf::{Document, Node};
 
 use super::accessor::numbers;
 use crate::{Builder, Moment};
@@ -50,9 +50,11 @@ pub(super) struct Animated {
 }
 
 impl Animated {
-    /// Reads the animation that a moment asks for; the others are listed, and all without a moment.
+    /// Reads the animation that a moment asks for; the others are listed, and all without a moment. `counted` are the numbers of the channels of
+    /// each animation in the file: those that lead to no node are left out before.
     pub(super) fn read(
-        file: &Gltf,
+        file: &Document,
+        counted: &[Vec<usize>],
         buffers: &[Vec<u8>],
         moment: Option<&Moment>,
         builder: &mut Builder<'_>,
@@ -75,7 +77,8 @@ impl Animated {
         };
         let mut animated = Self { shutter_s: [moment.opens_s, moment.opens_s + moment.shutter_s], ..Self::default() };
         for (i, channel) in asked.channels().enumerate() {
-            let place = format!("$.animations[{}].channels[{i}]", asked.index());
+            let number = counted.get(asked.index()).and_then(|numbers| numbers.get(i)).unwrap_or(&i);
+            let place = format!("$.animations[{}].channels[{number}]", asked.index());
             // The library takes both for granted.
             let target = &file.as_json().animations[asked.index()].channels[i].target;
             if matches!(target.path, Checked::Invalid) {
@@ -157,7 +160,7 @@ impl Animated {
 }
 
 /// The index of the animation that is asked for.
-fn asked(file: &Gltf, moment: &Moment) -> Result<usize, String> {
+fn asked(file: &Document, moment: &Moment) -> Result<usize, String> {
     let list = || {
         let names: Vec<String> = file
             .animations()

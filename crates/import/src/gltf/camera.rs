@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 
 use super::Walk;
 use super::animation::{Pose, slerp};
+use super::material::decimal;
 use crate::matrix::rows;
 
 /// Between keyframes a camera may be off its way by this share of its distance from the origin and of the way, and of a radian.
@@ -30,24 +31,27 @@ impl Walk<'_, '_> {
             self.builder.leave_out(place, "its node flattens it");
             return;
         };
-        let mut value = json!({
-            "position_m": matrix.translation.to_array(), "direction": direction.to_array(), "up": up.to_array(),
-        });
+        let mut value = json!({ "direction": direction.to_array(), "up": up.to_array() });
+        let mut forward_m = 0.0;
         let aspect = match camera.projection() {
             gltf::camera::Projection::Perspective(lens) => {
                 value["type"] = json!("perspective");
                 value["vertical_fov_deg"] = json!(f64::from(lens.yfov()).to_degrees());
+                value["near_m"] = json!(decimal(lens.znear()).max(0.0));
                 lens.aspect_ratio().map(f64::from)
             }
             gltf::camera::Projection::Orthographic(view) => {
                 value["type"] = json!("orthographic");
                 value["height_m"] = json!(2.0 * f64::from(view.ymag()));
+                // Its rays start on the plane of its place.
+                forward_m = decimal(view.znear());
                 Some(f64::from(view.xmag() / view.ymag()))
             }
         };
+        value["position_m"] = json!((matrix.translation + forward_m * direction).to_array());
         if let Some(keyframes) = motion {
             // From where it looks along −z at the origin, so that its way is the keyframes' own.
-            value["position_m"] = json!([0, 0, 0]);
+            value["position_m"] = json!([0.0, 0.0, 0.0 - forward_m]);
             value["direction"] = json!([0, 0, -1]);
             value["up"] = json!([0, 1, 0]);
             value["keyframes"] = json!(keyframes);

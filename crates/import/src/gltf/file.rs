@@ -1,50 +1,32 @@
 //! Files of glTF: what the library takes for granted, and the bytes that they name.
 
 use base64::Engine as _;
-use gltf::{Gltf, buffer};
+use gltf::json::Root;
+use gltf::json::buffer::Buffer;
+use gltf::{Document, Gltf};
 use serde_json::Value;
 
+use super::{compression, extensions};
 use crate::Builder;
 
 /// Bytes of the header of a binary file.
 const GLB_HEADER: u32 = 12;
 
-/// Extensions that a file may require although the library does not know them.
-const HONOURED: [&str; 8] = [
-    "KHR_mesh_quantization",
-    "KHR_materials_anisotropy",
-    "KHR_materials_clearcoat",
-    "KHR_materials_diffuse_transmission",
-    "KHR_materials_dispersion",
-    "KHR_materials_iridescence",
-    "KHR_materials_sheen",
-    "KHR_materials_variants",
-];
-
-/// Extensions that compress meshes, and what a user may do.
-const COMPRESSED: [&str; 2] = ["KHR_draco_mesh_compression", "EXT_meshopt_compression"];
-
-/// The file, checked by the library.
-pub(super) fn parse(bytes: &[u8]) -> Result<Gltf, String> {
-    let Gltf { document, blob } = Gltf::from_slice_without_validation(bytes).map_err(|error| error.to_string())?;
+/// The file with all that is compressed written out, checked by the library; and the bytes of every buffer.
+pub(super) fn parse(bytes: &[u8], builder: &Builder<'_>) -> Result<(Document, Vec<Vec<u8>>), String> {
+    let bytes = extensions::without_pointers(bytes)?;
+    let Gltf { document, blob } = Gltf::from_slice_without_validation(&bytes).map_err(|error| error.to_string())?;
     let mut root = document.into_json();
-    if let Some(name) = root.extensions_required.iter().find(|name| COMPRESSED.contains(&name.as_str())) {
-        return Err(format!(
-            "$.extensionsRequired: its meshes are compressed by {name}, which cannot be read; write the model without compression, for \
-             example with gltf-transform"
-        ));
-    }
-    root.extensions_required.retain(|name| !HONOURED.contains(&name.as_str()));
-    let document = gltf::Document::from_json(root).map_err(|error| error.to_string())?;
-    Ok(Gltf { document, blob })
+    let mut buffers = buffers(&root, blob.as_deref(), builder)?;
+    compression::undo(&mut root, &mut buffers)?;
+    // They were looked at before.
+    root.extensions_required.clear();
+    let document = Document::from_json(root).map_err(|error| error.to_string())?;
+    Ok((document, buffers))
 }
 
-/// What morph targets say that is made use of; tangents follow from what is moved.
-const MOVED: [&str; 3] = ["POSITION", "NORMAL", "TANGENT"];
-
-/// Refuses primitives that name accessors which are not there: the library's own check looks them up before it counts. Lists what else morph
-/// targets say, which the library does not read.
-pub(super) fn check_primitives(bytes: &[u8], builder: &mut Builder<'_>) -> Result<(), String> {
+/// What a file says, before the library reads it.
+pub(super) fn json(bytes: &[u8]) -> Result<Value, String> {
     let glb;
     let text = if bytes.starts_with(b"glTF") {
         // The library subtracts the header's own length before it compares.
@@ -58,7 +40,15 @@ pub(super) fn check_primitives(bytes: &[u8], builder: &mut Builder<'_>) -> Resul
     } else {
         bytes
     };
-    let root: Value = serde_json::from_slice(text).map_err(|error| error.to_string())?;
+    serde_json::from_slice(text).map_err(|error| error.to_string())
+}
+
+/// What morph targets say that is made use of; tangents follow from what is moved.
+const MOVED: [&str; 3] = ["POSITION", "NORMAL", "TANGENT"];
+
+/// Refuses primitives that name accessors which are not there: the library looks them up before it counts.
+/// Lists what else morph targets say, which the library does not read.
+pub(super) fn check_primitives(root: &Value, builder: &mut Builder<'_>) -> Result<(), String> {
     let list = |value: &'_ Value| value.as_array().cloned().unwrap_or_default();
     let count = root["accessors"].as_array().map_or(0, Vec::len) as u64;
     for (i, mesh) in root["meshes"].as_array().into_iter().flatten().enumerate() {
@@ -85,7 +75,7 @@ pub(super) fn check_primitives(bytes: &[u8], builder: &mut Builder<'_>) -> Resul
 }
 
 /// Refuses images that the library takes for granted: each is a file, or a part of a buffer of a stated type.
-pub(super) fn check_images(file: &Gltf) -> Result<(), String> {
+pub(super) fn check_images(file: &Document) -> Result<(), String> {
     for (i, image) in file.as_json().images.iter().enumerate() {
         let whole = if image.buffer_view.is_some() { image.mime_type.is_some() } else { image.uri.is_some() };
         if !whole {
@@ -96,7 +86,7 @@ pub(super) fn check_images(file: &Gltf) -> Result<(), String> {
 }
 
 /// Refuses nodes that name a light of a list that is not there.
-pub(super) fn check_lights(file: &Gltf) -> Result<(), String> {
+pub(super) fn check_lights(file: &Document) -> Result<(), String> {
     let count = file.lights().map_or(0, Iterator::count);
     for (i, node) in file.as_json().nodes.iter().enumerate() {
         let lamp = node.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref());
@@ -107,21 +97,23 @@ pub(super) fn check_lights(file: &Gltf) -> Result<(), String> {
     Ok(())
 }
 
-/// The bytes of every buffer.
-pub(super) fn buffers(file: &Gltf, builder: &Builder<'_>) -> Result<Vec<Vec<u8>>, String> {
-    file.buffers()
-        .map(|buffer| {
-            let place = format!("$.buffers[{}]", buffer.index());
-            let bytes = match buffer.source() {
-                buffer::Source::Bin => file.blob.clone().ok_or_else(|| format!("{place}: there is no binary part")),
-                buffer::Source::Uri(uri) => resource(uri, builder).map_err(|why| format!("{place}: {why}")),
-            }?;
-            match bytes.len() < buffer.length() {
-                true => Err(format!("{place}: it has {} bytes, and should have {}", bytes.len(), buffer.length())),
-                false => Ok(bytes),
-            }
-        })
-        .collect()
+/// The bytes of every buffer; those of the binary part are `blob`.
+fn buffers(root: &Root, blob: Option<&[u8]>, builder: &Builder<'_>) -> Result<Vec<Vec<u8>>, String> {
+    let bytes_of = |(index, buffer): (usize, &Buffer)| {
+        let place = format!("$.buffers[{index}]");
+        if compression::is_placeholder(buffer) {
+            return Ok(Vec::new());
+        }
+        let bytes = match &buffer.uri {
+            None => blob.map(<[u8]>::to_vec).ok_or_else(|| format!("{place}: there is no binary part")),
+            Some(uri) => resource(uri, builder).map_err(|why| format!("{place}: {why}")),
+        }?;
+        match (bytes.len() as u64) < buffer.byte_length.0 {
+            true => Err(format!("{place}: it has {} bytes, and should have {}", bytes.len(), buffer.byte_length.0)),
+            false => Ok(bytes),
+        }
+    };
+    root.buffers.iter().enumerate().map(bytes_of).collect()
 }
 
 /// The bytes that a URI stands for: data in itself, or a file beside the model.

@@ -6,6 +6,7 @@ use gltf::texture::WrappingMode;
 use serde_json::{Value, json};
 
 use super::accessor::bytes_of;
+use super::extensions::unread_image;
 use super::file::resource;
 use super::material::{Materials, decimal};
 use crate::{Builder, uv};
@@ -129,7 +130,7 @@ impl<'d> Materials<'d> {
         match texture.source() {
             Some(image) => self.file(&image, buffers, builder),
             None => {
-                builder.leave_out(place, "its image is of an unknown kind");
+                builder.leave_out(place, unread_image(texture));
                 None
             }
         }
@@ -162,7 +163,7 @@ impl<'d> Materials<'d> {
                 Some((builder.add_file("image", extension, bytes), decoded.mean()))
             }
             Err(why) => {
-                builder.leave_out(&place, format!("it is left out: {why}"));
+                builder.leave_out(&place, format!("it is left out: {why} (PNG and JPEG are read)"));
                 None
             }
         };

@@ -1,6 +1,6 @@
 //! glTF materials, as far as the format has them.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use gltf::material::AlphaMode;
 use serde_json::{Map, Value, json};
@@ -8,6 +8,7 @@ use serde_json::{Map, Value, json};
 use super::anisotropy::Anisotropy;
 use super::clearcoat::ClearCoat;
 use super::diffuse_transmission;
+use super::extensions;
 use super::image::TextureTransform;
 use super::iridescence::Iridescence;
 use super::number::{Number, data_image};
@@ -33,6 +34,15 @@ pub(super) struct Look {
     pub has_image: bool,
 }
 
+/// How much of the light meets a surface.
+pub(super) struct Opacity {
+    pub factor: f64,
+    /// An image whose alpha is multiplied by the factor, and its set of texture coordinates.
+    pub image: Option<(Value, u32)>,
+    /// Where the image is stated.
+    pub place: String,
+}
+
 /// The materials met so far.
 #[derive(Debug)]
 pub(super) struct Materials<'d> {
@@ -41,13 +51,16 @@ pub(super) struct Materials<'d> {
     pub(super) fits: HashMap<u32, Fit>,
     known: HashMap<Option<usize>, Look>,
     pub(super) images: HashMap<usize, Option<(String, [f64; 3])>>,
+    /// Those of triangles that glTF shows from their front only.
+    pub(super) single_sided: HashSet<Option<usize>>,
     /// Whether the material at hand makes use of alpha.
     pub(super) alpha_counts: bool,
 }
 
 impl<'d> Materials<'d> {
     pub(super) fn new(document: &'d gltf::Document) -> Self {
-        Self { document, fits: HashMap::new(), known: HashMap::new(), images: HashMap::new(), alpha_counts: false }
+        let (fits, known, images) = (HashMap::new(), HashMap::new(), HashMap::new());
+        Self { document, fits, known, images, single_sided: HashSet::new(), alpha_counts: false }
     }
 
     pub(super) fn of(
@@ -60,8 +73,13 @@ impl<'d> Materials<'d> {
             return Ok(look.clone());
         }
         let place = material.index().map_or("the default material".to_owned(), |i| format!("$.materials[{i}]"));
+        list_unhonoured(material, &place, builder);
+        extensions::list_undeclared(material, &self.document.as_json().extensions_used, &place, builder);
         self.alpha_counts = material.alpha_mode() != AlphaMode::Opaque;
-        let (value, mut uv_set) = self.value(material, &place, buffers, builder);
+        let (value, mut uv_set) = match self.specular_glossiness(material, &place, buffers, builder) {
+            Some(made) => made,
+            None => self.value(material, &place, buffers, builder),
+        };
         let detail = self.detail(material, &place, &mut uv_set, buffers, builder);
         let emission = self.emission(material, &place, &mut uv_set, buffers, builder);
         let has_image = uv_set.is_some();
@@ -81,7 +99,6 @@ impl<'d> Materials<'d> {
         builder: &mut Builder<'_>,
     ) -> (Value, Option<u32>) {
         let surface = material.pbr_metallic_roughness();
-        list_unhonoured(material, place, builder);
         let (colour, mut uv_set) = self.base_colour(&surface, place, buffers, builder);
         let numbers = self.numbers(&surface, place, &mut uv_set, buffers, builder);
         let roughness = Number::new(decimal(surface.roughness_factor()), "green", numbers.as_ref());
@@ -186,16 +203,11 @@ impl<'d> Materials<'d> {
             }
             fits
         };
-        let surface = material.pbr_metallic_roughness();
-        let [.., factor] = surface.base_color_factor().map(decimal);
         let cutoff = (material.alpha_mode() == AlphaMode::Mask)
             .then(|| material.alpha_cutoff().map_or(0.5, decimal).clamp(0.0, 1.0));
         if material.alpha_mode() != AlphaMode::Opaque {
-            let at = format!("{place}.pbrMetallicRoughness.baseColorTexture");
-            let image = surface
-                .base_color_texture()
-                .and_then(|info| self.image(&info, &at, buffers, builder))
-                .filter(|(_, set)| fits(*set, &at, builder));
+            let Opacity { factor, image, place: at } = self.alpha(material, place, buffers, builder);
+            let image = image.filter(|(_, set)| fits(*set, &at, builder));
             match (image, cutoff) {
                 (Some((image, _)), cutoff) => {
                     let mut opacity = data_image(image);
@@ -234,6 +246,23 @@ impl<'d> Materials<'d> {
             }
         }
         detail
+    }
+
+    /// What a material that makes use of alpha says of it.
+    fn alpha(
+        &mut self,
+        material: &gltf::Material<'_>,
+        place: &str,
+        buffers: &[Vec<u8>],
+        builder: &mut Builder<'_>,
+    ) -> Opacity {
+        if let Some(stated) = self.diffuse_alpha(material, place, buffers, builder) {
+            return stated;
+        }
+        let surface = material.pbr_metallic_roughness();
+        let at = format!("{place}.pbrMetallicRoughness.baseColorTexture");
+        let image = surface.base_color_texture().and_then(|info| self.image(&info, &at, buffers, builder));
+        Opacity { factor: decimal(surface.base_color_factor()[3]), image, place: at }
     }
 
     fn emission(
@@ -299,19 +328,6 @@ fn list_unhonoured(material: &gltf::Material<'_>, place: &str, builder: &mut Bui
             builder.leave_out(format!("{place}.{key}"), what);
         }
     };
-    let no = "it is ignored";
     list(material.occlusion_texture().is_some(), "occlusionTexture", "it is ignored: shadows are traced");
     list(material.unlit(), "extensions.KHR_materials_unlit", "it is ignored: the surface is lit like any other");
-    const KNOWN: [&str; 7] = [
-        "KHR_materials_anisotropy",
-        "KHR_materials_clearcoat",
-        "KHR_materials_diffuse_transmission",
-        "KHR_materials_dispersion",
-        "KHR_materials_iridescence",
-        "KHR_materials_sheen",
-        "KHR_materials_volume_scatter",
-    ];
-    for key in material.extensions().into_iter().flat_map(|map| map.keys()) {
-        list(!KNOWN.contains(&key.as_str()), &format!("extensions.{key}"), no);
-    }
 }

@@ -7,9 +7,12 @@ mod base_colour;
 mod camera;
 mod clearcoat;
 mod colours;
+mod compression;
 mod diffuse_transmission;
+mod extensions;
 mod file;
 mod image;
+mod instancing;
 mod iridescence;
 mod layers;
 mod light;
@@ -20,6 +23,7 @@ mod part;
 mod sheen;
 mod skin;
 mod specular;
+mod specular_glossiness;
 mod transmission;
 mod variants;
 mod volume;
@@ -33,7 +37,7 @@ use gltf::mesh::Semantic;
 
 use crate::{Builder, Options};
 use animation::{Animated, Pose};
-use file::{buffers, check_images, check_lights, check_primitives, parse};
+use file::{check_images, check_lights, check_primitives, json, parse};
 use material::Materials;
 use part::{MadePart, Shape};
 use skin::Skeletons;
@@ -46,13 +50,17 @@ const MAX_MOVING: usize = 7;
 
 pub(super) fn import(bytes: &[u8], options: &Options, builder: &mut Builder<'_>) -> Result<(), String> {
     let moment = options.moment.as_ref();
-    check_primitives(bytes, builder)?;
-    let file = parse(bytes)?;
+    let stated = json(bytes)?;
+    extensions::check_required(&stated)?;
+    check_primitives(&stated, builder)?;
+    let channels = extensions::channels_of_nodes(&stated);
+    drop(stated);
+    let (file, buffers) = parse(bytes, builder)?;
     check_images(&file)?;
     check_lights(&file)?;
-    let buffers = buffers(&file, builder)?;
+    extensions::list_unread(&file.as_json().extensions_used, builder);
     let variant = variants::asked(&file, options.variant.as_deref(), builder)?;
-    let animated = Animated::read(&file, &buffers, moment, builder)?;
+    let animated = Animated::read(&file, &channels, &buffers, moment, builder)?;
     if moment.is_some_and(|moment| moment.shutter_s > 0.0) {
         builder.shutter_s = Some(animated.shutter_s);
     }
@@ -71,6 +79,7 @@ pub(super) fn import(bytes: &[u8], options: &Options, builder: &mut Builder<'_>)
         skinned: Vec::new(),
         visited: vec![false; file.nodes().count()],
         uses: HashMap::new(),
+        is_hidden: false,
     };
     let scene = file.default_scene().or_else(|| file.scenes().next()).ok_or("it has no scene")?;
     for other in file.scenes().filter(|other| other.index() != scene.index()) {
@@ -79,13 +88,17 @@ pub(super) fn import(bytes: &[u8], options: &Options, builder: &mut Builder<'_>)
     for (node, mesh) in file.nodes().filter_map(|node| node.mesh().map(|mesh| (node, mesh))) {
         // What is wrong with its shape is said if it is in the scene.
         if let Ok(shape) = walk.shape(&node, &mesh) {
-            *walk.uses.entry((mesh.index(), shape)).or_default() += 1;
+            let placements = walk.placements(&node);
+            let uses = walk.uses.entry((mesh.index(), shape)).or_default();
+            *uses = uses.saturating_add(placements);
         }
     }
     for node in scene.nodes() {
         walk.node(&node, &DAffine3::IDENTITY, 0)?;
     }
-    walk.place_skinned()
+    walk.place_skinned()?;
+    walk.add_backs();
+    Ok(())
 }
 
 struct Walk<'w, 'b> {
@@ -109,11 +122,13 @@ struct Walk<'w, 'b> {
     skinned: Vec<(gltf::Mesh<'w>, gltf::Primitive<'w>, String, Shape)>,
     visited: Vec<bool>,
     /// How often each mesh is placed in each shape: one that is placed again and again is a group with instances.
-    uses: HashMap<(usize, Shape), u32>,
+    uses: HashMap<(usize, Shape), usize>,
+    /// Whether the node at hand, or one around it, is hidden.
+    is_hidden: bool,
 }
 
 impl<'w> Walk<'w, '_> {
-    fn node(&mut self, node: &Node<'w>, parent: &DAffine3, depth: usize) -> Result<(), String> {
+    fn visit(&mut self, node: &Node<'w>, parent: &DAffine3, depth: usize) -> Result<(), String> {
         let place = format!("$.nodes[{}]", node.index());
         if depth > MAX_DEPTH {
             return Err(format!("{place}: nodes are nested more than {MAX_DEPTH} deep"));
@@ -193,7 +208,7 @@ impl<'w> Walk<'w, '_> {
         if let Some(camera) = node.camera() {
             self.camera(&camera, matrix);
         }
-        if let Some(lamp) = node.light() {
+        if let Some(lamp) = node.light().filter(|_| !self.is_hidden) {
             let [opens, closes] = self.animated.shutter_s;
             if !self.chain.is_empty() {
                 let what =
@@ -203,8 +218,9 @@ impl<'w> Walk<'w, '_> {
             let world = self.world(matrix, 0.5 * (opens + closes));
             self.light(&lamp, node, &world);
         }
-        if let Some(mesh) = node.mesh() {
+        if let Some(mesh) = node.mesh().filter(|_| !self.is_hidden) {
             let shape = self.shape(node, &mesh)?;
+            let places = self.places(node, matrix)?;
             for primitive in mesh.primitives() {
                 let name = match (node.name().or(mesh.name()), mesh.primitives().len()) {
                     (Some(name), 1) => name.to_owned(),
@@ -219,8 +235,15 @@ impl<'w> Walk<'w, '_> {
                 }
                 match shape.skin {
                     // Its joints place it in the world, wherever its node is.
-                    Some(_) => self.skinned.push((mesh.clone(), primitive, name, shape)),
-                    None => self.place((&mesh, &primitive, &shape), &name, matrix)?,
+                    Some(_) => {
+                        self.list_unused_places(node);
+                        self.skinned.push((mesh.clone(), primitive, name, shape));
+                    }
+                    None => {
+                        for map in &places {
+                            self.place((&mesh, &primitive, &shape), &name, map)?;
+                        }
+                    }
                 }
             }
         }

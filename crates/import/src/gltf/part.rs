@@ -57,9 +57,9 @@ impl<'w> Walk<'w, '_> {
         place: &str,
     ) -> Result<Option<MadePart>, String> {
         let fail = |what: &str| format!("{place}: {what}");
-        let material = self.material(primitive, place)?;
-        let alpha = material.alpha_mode();
-        let look = self.materials.of(&material, self.buffers, self.builder)?;
+        let stated = self.material(primitive, place)?;
+        let alpha = stated.alpha_mode();
+        let look = self.materials.of(&stated, self.buffers, self.builder)?;
         for (semantic, _) in primitive.attributes() {
             let used = match semantic {
                 Semantic::Positions | Semantic::Normals | Semantic::Tangents => true,
@@ -153,6 +153,7 @@ impl<'w> Walk<'w, '_> {
         if !mesh.colours.is_empty() {
             material = self.tinted(material, place)?;
         }
+        self.note_back(&stated);
         let file = self.builder.mesh_file(&mesh);
         Ok(Some(MadePart { file, mesh, material, emission, detail }))
     }

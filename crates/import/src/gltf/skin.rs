@@ -6,7 +6,7 @@ use std::rc::Rc;
 use etalon_scene::linear::cofactors;
 use glam::{DAffine3, DVec3};
 use gltf::mesh::Semantic;
-use gltf::{Gltf, Primitive, Skin};
+use gltf::{Document, Primitive, Skin};
 
 use super::accessor::numbers;
 use super::animation::Animated;
@@ -38,7 +38,7 @@ pub(super) struct Skeletons {
 }
 
 impl Skeletons {
-    pub(super) fn new(file: &Gltf, animated: &Animated) -> Self {
+    pub(super) fn new(file: &Document, animated: &Animated) -> Self {
         if file.skins().len() == 0 {
             return Self::default();
         }

@@ -1,6 +1,6 @@
 //! `KHR_materials_variants`: looks of a model, each with other materials of some of its primitives.
 
-use gltf::Gltf;
+use gltf::Document;
 use serde_json::Value;
 
 use super::Walk;
@@ -12,7 +12,7 @@ const NAME: &str = "KHR_materials_variants";
 ///
 /// # Errors
 /// If there is no such variant, with the names of those that there are.
-pub(super) fn asked(file: &Gltf, wanted: Option<&str>, builder: &mut Builder<'_>) -> Result<Option<usize>, String> {
+pub(super) fn asked(file: &Document, wanted: Option<&str>, builder: &mut Builder<'_>) -> Result<Option<usize>, String> {
     let extensions = file.as_json().extensions.as_ref();
     let list = extensions.and_then(|extensions| extensions.others.get(NAME)?["variants"].as_array());
     let names: Vec<&str> =

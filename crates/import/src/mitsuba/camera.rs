@@ -9,6 +9,8 @@ use super::element::{Element, numbers};
 
 /// The diagonal of the 35 mm film that a stated focal length is for, mm.
 const DIAGONAL_35_MM: f64 = 43.266_615_305_567_87;
+/// Where Mitsuba's cameras see no further, unless they say so; a lens that states no distance is in focus there.
+const FAR_CLIP: f64 = 1e4;
 /// Most lobes of Lanczos's filter in a scene.
 const MOST_LOBES: f64 = 16.0;
 
@@ -45,8 +47,12 @@ impl<'a> Walk<'a, '_, '_> {
             }
         }
         // −1 is without limit.
-        if let Some(depth) = element.number("max_depth")?.filter(|depth| *depth >= 1.0) {
-            self.builder.integrator.insert("max_depth".to_owned(), json!(depth.min(f64::from(u32::MAX)) as u32));
+        if let Some(depth) = element.number("max_depth")?.filter(|depth| *depth >= 0.0) {
+            if depth < 1.0 {
+                let what = "a max_depth of 0 shows nothing in Mitsuba: it becomes 1, which shows what shines";
+                self.builder.approximate(&element.place, what);
+            }
+            self.builder.integrator.insert("max_depth".to_owned(), json!(depth.clamp(1.0, f64::from(u32::MAX)) as u32));
             if matches!(plugin, "volpath" | "volpathmis" | "prbvolpath") {
                 self.limit_without_panes = true;
             }
@@ -108,8 +114,10 @@ impl<'a> Walk<'a, '_, '_> {
         }
         if element.plugin() == "thinlens" {
             let radius = element.number("aperture_radius")?.unwrap_or(0.0);
-            let focus =
-                element.number("focus_distance")?.ok_or_else(|| format!("{place}: it has no focus_distance"))?;
+            let focus = match element.number("focus_distance")? {
+                Some(focus) => focus,
+                None => element.number("far_clip")?.unwrap_or(FAR_CLIP),
+            };
             camera["lens"] = json!({ "radius_m": radius, "focus_distance_m": focus });
         }
         // Nothing is cut off far away.

@@ -109,7 +109,8 @@ impl Walk<'_, '_, '_> {
             "float" | "integer" => {
                 let text = element.attribute("value").unwrap_or("");
                 let value: f64 = text.trim().parse().map_err(|_| format!("{place}: \"{text}\" is not a number"))?;
-                self.constant(value, place, of)
+                // As light, a number is white there: D65 in the spectral variants. A `spectrum` of one number is of equal energy.
+                if of.is_light() { self.channels([value; 3], place, of)? } else { self.constant(value, place, of) }
             }
             "spectrum" => self.spectrum(element, of)?,
             "texture" => self.texture(element, of)?,

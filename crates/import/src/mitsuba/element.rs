@@ -52,6 +52,18 @@ impl Element {
         self.attribute("type").unwrap_or("")
     }
 
+    /// What the root of a file is where the file is included: of a scene what is in it, else itself, with the name that it has there.
+    fn included_as(mut self, name: Option<&String>) -> Vec<Self> {
+        if self.tag == "scene" {
+            return self.children;
+        }
+        self.attributes.remove("name");
+        if let Some(name) = name {
+            self.set("name", name.clone());
+        }
+        vec![self]
+    }
+
     pub(super) fn mark(&self) {
         self.used.set(true);
     }
@@ -212,7 +224,7 @@ pub(super) fn read(bytes: &[u8], given: &[(String, String)], builder: &Builder<'
         substituted: 0,
         goes_on: false,
     };
-    let mut root = reading.file(bytes, None, 0)?;
+    let mut root = reading.file(bytes, "", 0)?;
     if let Some((name, _)) = given.iter().find(|(name, _)| !reading.asked_for.contains(name)) {
         return Err(format!("the parameter \"{name}\" is given, but nothing in the scene asks for it"));
     }
@@ -239,8 +251,9 @@ struct Reading<'a> {
 }
 
 impl Reading<'_> {
-    fn file(&mut self, bytes: &[u8], name: Option<&str>, depth: usize) -> Result<Vec<Element>, String> {
-        let of = name.map_or_else(String::new, |name| format!("{name}, "));
+    /// The root of a file, as a list of one. The scene itself has no name.
+    fn file(&mut self, bytes: &[u8], name: &str, depth: usize) -> Result<Vec<Element>, String> {
+        let of = if name.is_empty() { String::new() } else { format!("{name}, ") };
         let text = std::str::from_utf8(bytes).map_err(|_| format!("{of}it is not UTF-8"))?;
         let parse = |text| {
             let options = ParsingOptions { nodes_limit: 2 * MAX_ELEMENTS as u32, ..ParsingOptions::default() };
@@ -253,8 +266,9 @@ impl Reading<'_> {
             self.goes_on |= alone.is_some();
             alone.ok_or_else(|| format!("{of}{error}"))
         })?;
-        let lines = Lines::new(text);
-        let mut read = self.element(document.root_element(), &of, &lines, depth)?;
+        let folder = name.rsplit_once('/').map_or("", |(folder, _)| folder);
+        let source = Source { of: &of, folder, lines: Lines::new(text) };
+        let mut read = self.element(document.root_element(), &source, depth)?;
         let is_old = |root: &&mut Element| root.attribute("version").is_some_and(|version| version.starts_with("0."));
         read.iter_mut().filter(is_old).for_each(older::upgrade);
         Ok(read)
@@ -264,11 +278,10 @@ impl Reading<'_> {
     fn element(
         &mut self,
         node: roxmltree::Node<'_, '_>,
-        of: &str,
-        lines: &Lines,
+        source: &Source<'_>,
         depth: usize,
     ) -> Result<Vec<Element>, String> {
-        let place = format!("{of}line {}", lines.of(node.range().start));
+        let place = format!("{}line {}", source.of, source.lines.of(node.range().start));
         self.count += 1;
         if depth > MAX_DEPTH || self.count > MAX_ELEMENTS {
             return Err(format!("{place}: more than {MAX_DEPTH} levels or {MAX_ELEMENTS} elements"));
@@ -292,7 +305,11 @@ impl Reading<'_> {
                 if folders.len() == MAX_FOLDERS {
                     return Err(format!("{place}: more than {MAX_FOLDERS} folders to look for files in"));
                 }
-                folders.push(folder);
+                // Beside the file that says so, or beside the scene; the last one is looked in first.
+                folders.push(folder.clone());
+                if !source.folder.is_empty() && folders.len() < MAX_FOLDERS {
+                    folders.push(format!("{}/{folder}", source.folder));
+                }
                 return Ok(Vec::new());
             }
             "include" => {
@@ -300,19 +317,32 @@ impl Reading<'_> {
                 if self.includes > MAX_INCLUDES {
                     return Err(format!("{place}: more than {MAX_INCLUDES} files are included"));
                 }
-                let name = attributes.get("filename").ok_or_else(|| format!("{place}: no filename"))?.clone();
-                let bytes = (self.near)(&name).map_err(|why| format!("{place}: \"{name}\" cannot be read: {why}"))?;
-                let included = self.file(&bytes, Some(&name), depth + 1)?;
-                // The root stands for what is in it.
-                return Ok(included.into_iter().flat_map(|root| root.children).collect());
+                let name = attributes.get("filename").ok_or_else(|| format!("{place}: no filename"))?;
+                let (name, bytes) = self.included(name, source.folder).map_err(|why| format!("{place}: {why}"))?;
+                let included = self.file(&bytes, &name, depth + 1)?;
+                let named = attributes.get("name");
+                return Ok(included.into_iter().flat_map(|root| root.included_as(named)).collect());
             }
             _ => {}
         }
         let mut children = Vec::new();
         for child in node.children().filter(roxmltree::Node::is_element) {
-            children.extend(self.element(child, of, lines, depth + 1)?);
+            children.extend(self.element(child, source, depth + 1)?);
         }
         Ok(vec![Element { tag, attributes, children, place, used: Cell::new(false) }])
+    }
+
+    /// A file that another names, and its name: beside that one, or where all files are looked for.
+    fn included(&self, name: &str, folder: &str) -> Result<(String, Vec<u8>), String> {
+        let name = name.replace('\\', "/");
+        let beside = (!folder.is_empty()).then(|| format!("{folder}/{name}"));
+        if let Some(beside) = beside
+            && let Ok(bytes) = (self.near)(&beside)
+        {
+            return Ok((beside, bytes));
+        }
+        let bytes = (self.near)(&name).map_err(|why| format!("\"{name}\" cannot be read: {why}"))?;
+        Ok((name, bytes))
     }
 
     /// A text with the values of its parameters in the place of their names.
@@ -336,6 +366,15 @@ impl Reading<'_> {
         result.push_str(rest);
         Ok(result)
     }
+}
+
+/// A file that is being read.
+struct Source<'a> {
+    /// What comes before the number of a line: its name, unless it is the scene itself.
+    of: &'a str,
+    /// The folder that it lies in, from that of the scene.
+    folder: &'a str,
+    lines: Lines,
 }
 
 /// Where the lines of a text begin.

@@ -8,36 +8,12 @@ use super::element::Element;
 use super::sheet::{is_sheet, unpolarised};
 use crate::budget::BlendSize;
 use crate::metals;
+use crate::missing;
 use crate::number::{Number, Rough};
 use crate::relief::{has_map, without_map};
 use crate::sides::change_sides;
 use crate::table::{Table, metal};
 use etalon_scene::{Symmetry, read_measured};
-
-/// Indices of refraction that Mitsuba has names for, as its documentation lists them.
-const INDICES: [(&str, f64); 21] = [
-    ("vacuum", 1.0),
-    ("helium", 1.000_036),
-    ("hydrogen", 1.000_132),
-    ("air", 1.000_277),
-    ("carbon dioxide", 1.000_45),
-    ("water", 1.3330),
-    ("acetone", 1.36),
-    ("ethanol", 1.361),
-    ("carbon tetrachloride", 1.461),
-    ("glycerol", 1.4729),
-    ("benzene", 1.501),
-    ("silicone oil", 1.520_45),
-    ("bromine", 1.661),
-    ("water ice", 1.31),
-    ("fused quartz", 1.458),
-    ("pyrex", 1.470),
-    ("acrylic glass", 1.49),
-    ("polypropylene", 1.49),
-    ("bk7", 1.5046),
-    ("sodium chloride", 1.544),
-    ("diamond", 2.419),
-];
 
 /// What a surface is made of.
 #[derive(Clone, Debug)]
@@ -86,8 +62,9 @@ impl Walk<'_, '_, '_> {
         let look = match element.plugin() {
             "twosided" => {
                 let nested = element.nested("bsdf", self.ids)?;
-                if nested.len() > 1 {
-                    self.builder.approximate(&place, "both sides have the first of its materials");
+                if nested.iter().any(|other| !std::ptr::eq(*other, nested[0])) {
+                    let what = "its back has the first of its two materials, too: a surface has one";
+                    self.builder.approximate(&place, what);
                 }
                 let mut look = self.first(&nested, &place)?;
                 change_sides(&mut look.material, &|_| "both");
@@ -237,7 +214,7 @@ impl Walk<'_, '_, '_> {
             "pplastic" => self.polarised_plastic(element)?,
             "measured" => self.measured(element)?,
             other => {
-                self.builder.approximate(place, format!("the material \"{other}\" is not known: it becomes grey"));
+                self.builder.approximate(place, missing::material(other));
                 element.children.iter().for_each(Element::mark);
                 grey()
             }
@@ -355,21 +332,16 @@ impl Walk<'_, '_, '_> {
         Ok(())
     }
 
-    fn index(&mut self, element: &Element, name: &str, default: f64) -> Result<f64, String> {
-        let Some(property) = element.property(name) else { return Ok(default) };
-        let text = property.attribute("value").unwrap_or("").trim();
-        let named = INDICES.iter().find(|(known, _)| known.eq_ignore_ascii_case(text)).map(|(_, index)| *index);
-        match named.or_else(|| text.parse().ok()) {
-            Some(index) if index > 0.0 && index.is_finite() => Ok(index),
-            _ => Err(format!("{}: \"{text}\" is not an index of refraction", property.place)),
-        }
-    }
-
     /// Says of a rough material how its facets are distributed and how they hide each other.
     fn put_facets(&mut self, element: &Element, material: &mut Value) -> Result<(), String> {
         let distribution = match element.string("distribution").unwrap_or("beckmann") {
             known @ ("beckmann" | "ggx") => known,
-            other => return Err(format!("{}: \"{other}\" is not a distribution of facets", element.place)),
+            other => {
+                // Their widths were chosen to be those of Beckmann's.
+                let what = format!("the facets \"{other}\" become Beckmann's of the same width");
+                self.builder.approximate(&element.place, what);
+                "beckmann"
+            }
         };
         // Which facets a sampler prefers changes the noise alone.
         element.string("sample_visible");

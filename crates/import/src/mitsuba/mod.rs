@@ -8,6 +8,7 @@ mod coordinates;
 mod element;
 mod emitter;
 mod filled;
+mod index;
 mod material;
 mod medium;
 mod older;

@@ -102,6 +102,9 @@ impl<'a> Walk<'a, '_, '_> {
                 Look::of(material)
             }
         };
+        for scattering in element.nested("subsurface", self.ids)? {
+            self.builder.leave_out(&scattering.place, missing::subsurface(scattering.plugin()));
+        }
         let look = self.filled(element, look)?;
         let flipped = element.flag("flip_normals")?.unwrap_or(false);
         let mut dressed = Dressed { name, look, emission, map, flipped };

@@ -55,9 +55,8 @@ impl Reading<'_, '_> {
             let focus = focus.unwrap_or(1e6) * along;
             camera["lens"] = json!({ "radius_m": radius * along, "focus_distance_m": focus });
         }
-        for harmless in ["shutteropen", "shutterclose"] {
-            list.get(harmless);
-        }
+        let open_s = list.number("shutterclose")?.unwrap_or(1.0) - list.number("shutteropen")?.unwrap_or(0.0);
+        self.list_exposure(open_s, place);
         list.list_unused(self.builder);
         self.builder.camera = Some(camera);
         Ok(())
@@ -84,15 +83,28 @@ impl Reading<'_, '_> {
         for harmless in ["filename", "savefp16", "diagonal"] {
             list.get(harmless);
         }
-        if matches!(list.string("sensor"), None | Some("cie1931")) && kind == "rgb" {
-            list.get("sensor");
+        if let Some(sensor) = list.string("sensor").filter(|sensor| *sensor != "cie1931") {
+            let what =
+                format!("the sensor \"{sensor}\" is left out: colours are those that the CIE 1931 observer sees");
+            self.builder.leave_out(place, what);
         }
-        if list.number("iso")?.unwrap_or(100.0) != 100.0 || list.number("exposuretime")?.unwrap_or(1.0) != 1.0 {
-            let factor = list.number("iso")?.unwrap_or(100.0) / 100.0 * list.number("exposuretime")?.unwrap_or(1.0);
-            self.builder.leave_out(place, format!("its exposure is ignored: a factor of {factor} on the picture"));
+        let number = |key: &str, default: f64| Ok::<f64, String>(list.number(key)?.unwrap_or(default));
+        self.list_exposure(number("iso", 100.0)? / 100.0 * number("exposuretime", 1.0)?, place);
+        if let Some(most) = list.number("maxcomponentvalue")? {
+            self.builder.leave_out(place, format!("samples above \"maxcomponentvalue\" {most} keep their brightness"));
+        }
+        if !matches!(kind, "rgb" | "gbuffer") {
+            self.builder.approximate(place, format!("the film \"{kind}\" becomes a picture of colours"));
         }
         list.list_unused(self.builder);
         Ok(())
+    }
+
+    /// Lists what pbrt multiplies the picture by.
+    fn list_exposure(&mut self, factor: f64, place: &str) {
+        if factor != 1.0 {
+            self.builder.leave_out(place, format!("its exposure is ignored: a factor of {factor} on the picture"));
+        }
     }
 
     pub(super) fn sampler(&mut self, kind: &str, list: &Parameters) -> Result<(), String> {

@@ -1,5 +1,8 @@
 //! Lights of pbrt.
 
+use std::f64::consts::PI;
+
+use etalon_optics::colour::rec709_luminance;
 use etalon_scene::Encoding;
 use etalon_scene::linear::is_similarity;
 use glam::{DAffine3, DVec3};
@@ -7,6 +10,7 @@ use serde_json::{Value, json};
 
 use super::Reading;
 use super::parameters::Parameters;
+use super::power::{Lamp, cone, of_illuminance, of_power};
 
 impl Reading<'_, '_> {
     pub(super) fn light(&mut self, kind: &str, list: &Parameters, place: &str) -> Result<(), String> {
@@ -17,17 +21,18 @@ impl Reading<'_, '_> {
         let (position, along) = (map.transform_point3(from).to_array(), map.transform_vector3(to - from).to_array());
         let mut value = match kind {
             "distant" => {
-                let irradiance = self.emitted(list, "L", scale)?;
+                let irradiance = self.emitted(list, "L", scale * of_illuminance(list, 1.0)?)?;
                 json!({ "type": "directional", "direction": along, "irradiance": irradiance })
             }
             "point" => {
-                let intensity = self.emitted(list, "I", scale)?;
+                let intensity = self.emitted(list, "I", scale * of_power(list, 4.0 * PI)?)?;
                 json!({ "type": "point", "position_m": position, "intensity": intensity })
             }
             "spot" => {
-                let intensity = self.emitted(list, "I", scale)?;
                 let outer = list.number("coneangle")?.unwrap_or(30.0);
                 let inner = outer - list.number("conedeltaangle")?.unwrap_or(5.0);
+                let factor = of_power(list, cone(outer, inner))?;
+                let intensity = self.emitted(list, "I", scale * factor)?;
                 json!({
                     "type": "spot", "position_m": position, "direction": along, "intensity": intensity,
                     "half_angle_deg": outer, "inner_half_angle_deg": inner.clamp(0.0, outer),
@@ -38,7 +43,10 @@ impl Reading<'_, '_> {
                     Some(sky) => sky,
                     None => return Ok(()),
                 },
-                None => json!({ "type": "environment", "radiance": self.emitted(list, "L", scale)? }),
+                None => {
+                    let radiance = self.emitted(list, "L", scale * of_illuminance(list, PI)?)?;
+                    json!({ "type": "environment", "radiance": radiance })
+                }
             },
             other => {
                 self.builder.leave_out(place, format!("the light \"{other}\" is not known, and is left out"));
@@ -72,6 +80,7 @@ impl Reading<'_, '_> {
         if !is_similarity(&map.matrix3) {
             self.builder.leave_out(place, "its transform stretches the sky; this is ignored");
         }
+        let scale = scale * self.illuminance_of_sky(list, &name, place)?;
         // The middle of the square is along +z, its right edge along +x and its lower edge along +y.
         Ok(Some(json!({
             "type": "environment",
@@ -84,18 +93,20 @@ impl Reading<'_, '_> {
     }
 
     /// What the shapes from here on emit.
-    pub(super) fn area_light(&mut self, kind: &str, list: &Parameters, place: &str) -> Result<Option<Value>, String> {
+    pub(super) fn area_light(&mut self, kind: &str, list: &Parameters, place: &str) -> Result<Option<Lamp>, String> {
         if kind != "diffuse" {
             self.builder.leave_out(place, format!("the light \"{kind}\" is not known, and is left out"));
             return Ok(None);
         }
         let scale = list.number("scale")?.unwrap_or(1.0).max(0.0);
+        let mut luminance = 1.0;
         let radiance = match list.string("filename").map(str::to_owned) {
             None => self.emitted(list, "L", scale)?,
             Some(file) => {
                 let found = self.builder.image_file(&file, Encoding::Auto, place);
                 match found {
-                    Ok((name, _)) => {
+                    Ok((name, mean)) => {
+                        luminance = rec709_luminance(mean);
                         json!({ "type": "image", "file": name, "wrap": "clamp", "factor": [scale, scale, scale] })
                     }
                     Err(why) => {
@@ -107,7 +118,8 @@ impl Reading<'_, '_> {
             }
         };
         let sides = if list.flag("twosided").unwrap_or(false) { "both" } else { "front" };
+        let lamp = Self::lamp(json!({ "radiance": radiance, "sides": sides }), list, luminance)?;
         list.list_unused(self.builder);
-        Ok(Some(json!({ "radiance": radiance, "sides": sides })))
+        Ok(Some(lamp))
     }
 }

@@ -1,11 +1,12 @@
 //! Materials of pbrt.
 
+use etalon_scene::{Symmetry, read_measured};
 use serde_json::{Map, Value, json};
 
+use super::glass::{glass, named_metal};
 use super::parameters::Parameters;
 use super::{Look, Reading};
 use crate::budget::BlendSize;
-use crate::metals;
 use crate::number::{Number, Rough};
 use crate::relief::has_map;
 use crate::table::{Table, metal};
@@ -38,22 +39,28 @@ impl Reading<'_, '_> {
                     list.get(harmless);
                 }
                 let mut plastic = json!({ "type": "plastic", "reflectance": reflectance, "coat": coat });
-                self.rough(list, place)?.put(&mut plastic);
+                self.rough(list, "", place)?.put(&mut plastic);
                 plastic
             }
             "conductor" | "coatedconductor" => {
-                if kind == "coatedconductor" {
+                let is_coated = kind == "coatedconductor";
+                if is_coated {
                     self.builder.leave_out(place, "the coat is left out: it becomes bare metal");
+                    list.all.iter().filter(|p| p.name.starts_with("interface.")).for_each(|p| p.mark());
+                    for of_coat in ["thickness", "maxdepth", "nsamples", "albedo", "g"] {
+                        list.get(of_coat);
+                    }
                 }
-                self.conductor(list, place)?
+                self.conductor(list, if is_coated { "conductor." } else { "" }, place)?
             }
             "dielectric" => {
                 let mut glass =
                     json!({ "type": "dielectric", "interior": self.index(list, 1.5)?, "multiple_scattering": "lost" });
-                self.rough(list, place)?.put(&mut glass);
+                self.rough(list, "", place)?.put(&mut glass);
                 glass
             }
             "thindielectric" => json!({ "type": "thin-dielectric", "index": self.index(list, 1.5)? }),
+            "measured" => self.measured(list, place)?,
             "mix" => {
                 let names: Vec<String> = list.get("materials").map_or(&[][..], |p| p.strings()).to_vec();
                 let [first, second] = &names[..] else {
@@ -92,24 +99,41 @@ impl Reading<'_, '_> {
         Ok(Look { value, opacity, detail, size })
     }
 
-    fn conductor(&mut self, list: &Parameters, place: &str) -> Result<Value, String> {
-        let rough = self.rough(list, place)?;
-        let prefix = if list.0.iter().any(|p| p.name.starts_with("conductor.")) { "conductor." } else { "" };
+    /// A measured BRDF, whose file is copied. It reflects on both sides.
+    fn measured(&mut self, list: &Parameters, place: &str) -> Result<Value, String> {
+        let name = list.string("filename").ok_or_else(|| format!("{place}: it has no \"filename\""))?;
+        let bytes = self.builder.bytes_of(name, place)?;
+        let (brdf, _) = read_measured(&bytes).map_err(|why| format!("{place}: \"{name}\": {why}"))?;
+        let file = self.builder.copy("measured", name, bytes);
+        let mut material = json!({ "type": "measured", "file": file, "sides": "both" });
+        if brdf.symmetry() != Symmetry::Isotropic {
+            material["tangent_rotation_deg"] = json!(0);
+        }
+        Ok(material)
+    }
+
+    /// A metal, whose parameters have a prefix if it is below a coat.
+    fn conductor(&mut self, list: &Parameters, prefix: &str, place: &str) -> Result<Value, String> {
+        let rough = self.rough(list, prefix, place)?;
         let named = |what: &str| list.string(&format!("{prefix}{what}")).map(str::to_owned);
         let eta = named("eta");
         named("k");
-        let mut value = if let Some(reflectance) = self.reflectance(list, &format!("{prefix}reflectance"), true)? {
+        // The reflectance of what is coated has no prefix there.
+        let stated = match self.reflectance(list, "reflectance", true)? {
+            None if !prefix.is_empty() => self.reflectance(list, &format!("{prefix}reflectance"), true)?,
+            stated => stated,
+        };
+        let mut value = if let Some(reflectance) = stated {
             // The same index as in pbrt: 1 + ik.
             json!({ "type": "conductor", "reflectance": reflectance })
         } else if let Some((eta, k)) = self.own_indices(list, prefix)? {
             metal(&eta, &k)
         } else {
-            let name = eta.as_deref().unwrap_or("metal-Cu-eta");
-            let symbol = name.strip_prefix("metal-").and_then(|name| name.strip_suffix("-eta"));
-            symbol.and_then(metals::named).unwrap_or_else(|| {
-                self.builder.approximate(place, format!("the metal \"{name}\" is not known: it becomes aluminium"));
-                json!({ "type": "conductor", "metal": "Al" })
-            })
+            let (known, other) = named_metal(eta.as_deref().unwrap_or("metal-Cu-eta"));
+            if let Some(what) = other {
+                self.builder.approximate(place, what);
+            }
+            known
         };
         rough.put(&mut value);
         value["outside_fit"] = json!("clamp");
@@ -121,11 +145,17 @@ impl Reading<'_, '_> {
     fn own_indices(&mut self, list: &Parameters, prefix: &str) -> Result<Option<(Table, Table)>, String> {
         let mut tables = Vec::new();
         for what in ["eta", "k"] {
-            if let Some(parameter) = list.get(&format!("{prefix}{what}"))
-                && let Some(table) = self.table(parameter)?
-            {
-                tables.push(table);
-            }
+            let Some(parameter) = list.get(&format!("{prefix}{what}")) else { continue };
+            let table = match (parameter.kind.as_str(), parameter.numbers()) {
+                ("rgb" | "color", [r, g, b]) => {
+                    let what = "a colour as eta or k becomes a smooth spectrum of that colour";
+                    self.builder.approximate(&parameter.place, what);
+                    Table::of_colour(&json!({ "rgb": [r, g, b] }))
+                }
+                (_, [value]) => Some(Table(vec![(550.0, *value)])),
+                _ => self.table(parameter)?,
+            };
+            tables.extend(table);
         }
         Ok(match (tables.pop(), tables.pop()) {
             (Some(k), Some(eta)) => Some((eta, k)),
@@ -135,26 +165,19 @@ impl Reading<'_, '_> {
 
     /// An index of refraction: a number, or a glass by its name.
     fn index(&mut self, list: &Parameters, default: f64) -> Result<Value, String> {
-        let Some(parameter) = list.get("eta").or_else(|| list.get("interface.eta")) else { return Ok(json!(default)) };
+        let Some(parameter) = list.get("eta") else { return Ok(json!(default)) };
         let place = parameter.place.clone();
         match (parameter.numbers(), parameter.strings()) {
             ([index], _) if *index > 0.0 => Ok(json!(index)),
-            (_, [name]) => Ok(match name.as_str() {
-                "glass-BK7" => json!({ "type": "glass", "name": "N-BK7", "outside_fit": "clamp" }),
-                "glass-SF11" => json!({ "type": "glass", "name": "N-SF11", "outside_fit": "clamp" }),
-                other => {
-                    self.builder
-                        .approximate(&place, format!("the glass \"{other}\" is not known: its index becomes 1.5"));
-                    json!(1.5)
-                }
-            }),
+            (_, [name]) => Ok(glass(name).unwrap_or_else(|| {
+                self.builder.approximate(&place, format!("the glass \"{name}\" is not known: its index becomes 1.5"));
+                json!(1.5)
+            })),
             _ => Err(format!("{place}: it is not an index of refraction")),
         }
     }
 
-    fn rough(&mut self, list: &Parameters, place: &str) -> Result<Rough, String> {
-        let prefixed = list.0.iter().any(|p| p.name.starts_with("interface."));
-        let prefix = if prefixed { "interface." } else { "" };
+    fn rough(&mut self, list: &Parameters, prefix: &str, place: &str) -> Result<Rough, String> {
         let both = self.share(list, &format!("{prefix}roughness"))?;
         let (u, v) =
             (self.share(list, &format!("{prefix}uroughness"))?, self.share(list, &format!("{prefix}vroughness"))?);

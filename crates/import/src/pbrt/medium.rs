@@ -30,6 +30,7 @@ impl Reading<'_, '_> {
             "uniformgrid" => {
                 let mut medium = self.coefficients(list, scale)?;
                 medium["density"] = self.uniform_grid(list, place)?;
+                self.light_of_grid(list, &mut medium, place)?;
                 medium
             }
             "rgbgrid" => self.rgb_grid(list, scale, place)?,
@@ -51,6 +52,35 @@ impl Reading<'_, '_> {
         }
         list.list_unused(self.builder);
         self.media.insert(name, Some(Rc::new(medium)));
+        Ok(())
+    }
+
+    /// What a grid emits, if that is the same in all of its cells.
+    fn light_of_grid(&mut self, list: &Parameters, medium: &mut Value, place: &str) -> Result<(), String> {
+        for of_fire in ["temperature", "temperatureoffset", "temperaturescale"] {
+            if list.get(of_fire).is_some() && of_fire == "temperature" {
+                self.builder.leave_out(place, "\"temperature\" is left out: the medium does not glow");
+            }
+        }
+        if list.get("Le").is_none() {
+            list.get("Lescale");
+            return Ok(());
+        }
+        let scales = list.numbers("Lescale").unwrap_or(&[1.0]);
+        let Some(factor) = scales.first().filter(|first| scales.iter().all(|scale| scale == *first)) else {
+            self.builder.leave_out(place, "\"Le\" is left out: its \"Lescale\" varies from cell to cell");
+            return Ok(());
+        };
+        let what = match scales.len() {
+            1 => {
+                "\"Le\" is the same in all of its box: there it falls from the middle to half at the middle of each face"
+            }
+            _ => {
+                "\"Le\" is the same in all of its box: there it falls to half over the outer half of the outermost cells"
+            }
+        };
+        self.builder.approximate(place, what);
+        medium["source_radiance"] = self.emitted(list, "Le", *factor)?;
         Ok(())
     }
 

@@ -2,13 +2,19 @@
 //!
 //! What a directive says and no part of this module has asked for is listed with its line.
 
+mod arguments;
+mod attributes;
 mod camera;
+mod glass;
 mod grid;
+mod gzip;
 mod light;
 mod material;
 mod measured;
 mod medium;
+mod mix;
 mod parameters;
+mod power;
 mod relief;
 mod shape;
 mod spectrum;
@@ -22,14 +28,20 @@ use serde_json::{Map, Value};
 
 use super::budget::BlendSize;
 use super::matrix::{inverse, looking, rotation};
+use super::number::Number;
 use super::{Builder, Outside};
-use parameters::Parameters;
-use tokens::{Token, Word, tokens};
+use arguments::Arguments;
+use attributes::{Attributes, Inheritance};
+use gzip::MOST_INFLATED;
+use power::{Faces, Lamp, MOST_MEASURED};
+use tokens::{Word, tokens};
 
 /// Deepest nesting of files that include files, and of attributes.
 const MAX_DEPTH: usize = 64;
 /// Most files that are included, each counted as often as it is.
 const MAX_INCLUDES: usize = 1000;
+/// Most bytes of included files that are read at a time, one within the other: their words take more memory than their text.
+const MOST_OPEN: usize = 1 << 28;
 
 pub(super) fn import(bytes: &[u8], builder: &mut Builder<'_>) -> Result<(), String> {
     let mut reading = Reading {
@@ -41,9 +53,15 @@ pub(super) fn import(bytes: &[u8], builder: &mut Builder<'_>) -> Result<(), Stri
         systems: HashMap::new(),
         materials: HashMap::new(),
         textures: HashMap::new(),
+        boards: HashMap::new(),
         media: HashMap::new(),
         meshes: HashMap::new(),
+        faces: HashMap::new(),
         object: None,
+        inheritance: Inheritance::default(),
+        measured_left: MOST_MEASURED,
+        inflated_left: MOST_INFLATED,
+        open: 0,
         includes: 0,
         shapes: 0,
     };
@@ -51,9 +69,10 @@ pub(super) fn import(bytes: &[u8], builder: &mut Builder<'_>) -> Result<(), Stri
     reading.builder.film = serde_json::json!({ "width": 1280, "height": 720, "filter": { "type": "gaussian" } });
     reading.builder.integrator.insert("max_depth".to_owned(), serde_json::json!(6));
     reading.file(bytes, "", 0)?;
-    if let Some((name, ..)) = reading.object {
+    if let Some((name, ..)) = &reading.object {
         return Err(format!("the object \"{name}\" is not ended"));
     }
+    reading.list_unread_attributes();
     Ok(())
 }
 
@@ -67,7 +86,11 @@ struct State {
     /// A material of the format, or the name of one, and how opaque it is.
     material: Rc<Look>,
     /// What the shapes from here on emit.
-    emission: Option<Rc<Value>>,
+    emission: Option<Rc<Lamp>>,
+    /// Whether transforms are those of the end of the shutter only.
+    at_end: bool,
+    /// Parameters that directives from here on have.
+    attributes: Attributes,
     reversed: bool,
     /// What fills the shapes from here on, and what stands outside of them.
     inside: Option<Rc<Value>>,
@@ -93,6 +116,8 @@ impl Default for State {
             transform: DAffine3::IDENTITY,
             material: Rc::new(material),
             emission: None,
+            at_end: false,
+            attributes: Attributes::default(),
             reversed: false,
             inside: None,
             outside: None,
@@ -110,12 +135,24 @@ struct Reading<'r, 'b> {
     systems: HashMap<String, DAffine3>,
     materials: HashMap<String, Rc<Look>>,
     textures: HashMap<String, Value>,
+    /// Chequerboards as numbers, by the names of their textures.
+    boards: HashMap<String, Number>,
     /// Media by their names: nothing for one that cannot be read.
     media: HashMap<String, Option<Rc<Value>>>,
-    /// Mesh files that have been read: what is placed of each, the box around it, and whether it has texture coordinates.
-    meshes: HashMap<String, shape::Placeable>,
+    /// Mesh files that have been read: what is placed of each, the box around it, and whether it has texture coordinates; and how many faces it
+    /// has.
+    meshes: HashMap<String, (shape::Placeable, usize)>,
+    /// The areas of those that are lamps of a stated power.
+    faces: HashMap<String, Rc<Faces>>,
     /// The object that is being defined, and what is outside of it.
     object: Option<(String, Outside)>,
+    inheritance: Inheritance,
+    /// How many more triangles of mesh files may be measured.
+    measured_left: usize,
+    /// How many more bytes compressed files may have.
+    inflated_left: usize,
+    /// Bytes of the included files that are being read.
+    open: usize,
     includes: usize,
     shapes: usize,
 }
@@ -141,8 +178,13 @@ impl Reading<'_, '_> {
                 if self.includes > MAX_INCLUDES {
                     return Err(format!("{place}: more than {MAX_INCLUDES} files are included"));
                 }
-                let bytes = self.builder.bytes_of(&name, &place)?;
+                let bytes = self.inflated(&name, &place)?;
+                self.open += bytes.len();
+                if self.open > MOST_OPEN {
+                    return Err(format!("{place}: \"{name}\": included files have more than {MOST_OPEN} bytes"));
+                }
                 self.file(&bytes, &format!("{name}, "), depth + 1)?;
+                self.open -= bytes.len();
             } else {
                 self.directive(directive, &mut arguments)?;
             }
@@ -153,7 +195,7 @@ impl Reading<'_, '_> {
     fn directive(&mut self, directive: &str, arguments: &mut Arguments<'_>) -> Result<(), String> {
         let place = arguments.place.to_owned();
         match directive {
-            "Identity" => self.state.transform = DAffine3::IDENTITY,
+            "Identity" => self.set(DAffine3::IDENTITY),
             "Translate" => self.apply(&DAffine3::from_translation(arguments.numbers()?.into())),
             "Scale" => self.apply(&DAffine3::from_scale(arguments.numbers()?.into())),
             "Rotate" => {
@@ -168,7 +210,10 @@ impl Reading<'_, '_> {
                     &placed.ok_or_else(|| format!("{place}: it has no viewing direction, or its up is along it"))?,
                 );
             }
-            "Transform" => self.state.transform = arguments.matrix()?,
+            "Transform" => {
+                let matrix = arguments.matrix()?;
+                self.set(matrix);
+            }
             "ConcatTransform" => {
                 let matrix = arguments.matrix()?;
                 self.apply(&matrix);
@@ -178,9 +223,14 @@ impl Reading<'_, '_> {
             }
             "CoordSysTransform" => {
                 let name = arguments.quoted()?;
-                let known = self.systems.get(&name);
-                self.state.transform =
-                    *known.ok_or_else(|| format!("{place}: there is no coordinate system \"{name}\""))?;
+                let known = self.systems.get(&name).copied();
+                self.set(known.ok_or_else(|| format!("{place}: there is no coordinate system \"{name}\""))?);
+            }
+            "ActiveTransform" => self.active_transform(arguments.word().unwrap_or_default(), &place)?,
+            "ColorSpace" => self.colour_space(&arguments.quoted()?, &place),
+            "Attribute" => {
+                let (target, list) = (arguments.quoted()?, arguments.parameters()?);
+                self.attribute(&target, list, &place)?;
             }
             "AttributeBegin" | "TransformBegin" => {
                 if self.saved.len() > 1 << 16 {
@@ -198,12 +248,12 @@ impl Reading<'_, '_> {
             }
             "ReverseOrientation" => self.state.reversed = !self.state.reversed,
             "WorldBegin" => {
-                self.state.transform = DAffine3::IDENTITY;
+                (self.state.transform, self.state.at_end) = (DAffine3::IDENTITY, false);
                 self.systems.insert("world".to_owned(), DAffine3::IDENTITY);
                 self.in_world = true;
             }
             "MakeNamedMedium" => {
-                let (name, list) = (arguments.quoted()?, arguments.parameters()?);
+                let (name, list) = (arguments.quoted()?, self.inheriting("medium", arguments)?);
                 self.named_medium(name, &list, &place)?;
             }
             "MediumInterface" => {
@@ -218,11 +268,11 @@ impl Reading<'_, '_> {
             "Integrator" => self.integrator(&arguments.quoted()?, &arguments.parameters()?, &place)?,
             "PixelFilter" => self.filter(&arguments.quoted()?, &arguments.parameters()?, &place)?,
             "Material" => {
-                let (kind, list) = (arguments.quoted()?, arguments.parameters()?);
+                let (kind, list) = (arguments.quoted()?, self.inheriting("material", arguments)?);
                 self.state.material = Rc::new(self.material(&kind, &list, &place)?);
             }
             "MakeNamedMaterial" => {
-                let (name, list) = (arguments.quoted()?, arguments.parameters()?);
+                let (name, list) = (arguments.quoted()?, self.inheriting("material", arguments)?);
                 let kind = list.string("type").unwrap_or("diffuse").to_owned();
                 let mut look = self.material(&kind, &list, &place)?;
                 let known = self.builder.material_name(&name);
@@ -238,15 +288,21 @@ impl Reading<'_, '_> {
             }
             "Texture" => {
                 let (name, kind, class) = (arguments.quoted()?, arguments.quoted()?, arguments.quoted()?);
-                let list = arguments.parameters()?;
+                let list = self.inheriting("texture", arguments)?;
                 self.texture(name, &kind, &class, &list, &place)?;
             }
-            "LightSource" => self.light(&arguments.quoted()?, &arguments.parameters()?, &place)?,
+            "LightSource" => {
+                let (kind, list) = (arguments.quoted()?, self.inheriting("light", arguments)?);
+                self.light(&kind, &list, &place)?;
+            }
             "AreaLightSource" => {
-                let (kind, list) = (arguments.quoted()?, arguments.parameters()?);
+                let (kind, list) = (arguments.quoted()?, self.inheriting("light", arguments)?);
                 self.state.emission = self.area_light(&kind, &list, &place)?.map(Rc::new);
             }
-            "Shape" => self.shape(&arguments.quoted()?, &arguments.parameters()?, &place)?,
+            "Shape" => {
+                let (kind, list) = (arguments.quoted()?, self.inheriting("shape", arguments)?);
+                self.shape(&kind, &list, &place)?;
+            }
             "ObjectBegin" => {
                 let name = arguments.quoted()?;
                 if self.object.is_some() {
@@ -275,79 +331,18 @@ impl Reading<'_, '_> {
     }
 
     fn apply(&mut self, step: &DAffine3) {
-        self.state.transform *= *step;
+        self.set(self.state.transform * *step);
+    }
+
+    /// Sets the coordinates in force, unless they are those of the end of the shutter: things stay where they are at its start.
+    fn set(&mut self, transform: DAffine3) {
+        if !self.state.at_end {
+            self.state.transform = transform;
+        }
     }
 
     /// From the coordinates in force to those of the scene, or of the object that is being defined.
     fn to_world(&self) -> DAffine3 {
         if self.object.is_some() { self.state.transform } else { self.world * self.state.transform }
-    }
-}
-
-/// What follows a directive.
-struct Arguments<'a> {
-    tokens: &'a [Token],
-    at: &'a mut usize,
-    of: &'a str,
-    place: &'a str,
-}
-
-impl Arguments<'_> {
-    fn quoted(&mut self) -> Result<String, String> {
-        match self.tokens.get(*self.at) {
-            Some(Token { word: Word::Quoted(text), .. }) => {
-                *self.at += 1;
-                Ok(text.clone())
-            }
-            _ => Err(format!("{}: a word in quotes should follow", self.place)),
-        }
-    }
-
-    /// Numbers, in brackets or not.
-    fn numbers<const N: usize>(&mut self) -> Result<[f64; N], String> {
-        let fail = || format!("{}: {N} numbers should follow", self.place);
-        let brackets = matches!(self.tokens.get(*self.at), Some(Token { word: Word::Open, .. }));
-        *self.at += usize::from(brackets);
-        let mut numbers = [0.0; N];
-        for number in &mut numbers {
-            match self.tokens.get(*self.at) {
-                Some(Token { word: Word::Number(value), .. }) => *number = *value,
-                _ => return Err(fail()),
-            }
-            *self.at += 1;
-        }
-        if brackets {
-            match self.tokens.get(*self.at) {
-                Some(Token { word: Word::Close, .. }) => *self.at += 1,
-                _ => return Err(fail()),
-            }
-        }
-        Ok(numbers)
-    }
-
-    /// A matrix, which is listed by columns.
-    fn matrix(&mut self) -> Result<DAffine3, String> {
-        let m: [f64; 16] = self.numbers()?;
-        if [m[3], m[7], m[11]] != [0.0; 3] || m[15] == 0.0 {
-            return Err(format!("{}: the matrix is not affine", self.place));
-        }
-        let column = |k: usize| [m[4 * k] / m[15], m[4 * k + 1] / m[15], m[4 * k + 2] / m[15]];
-        Ok(DAffine3::from_cols_array_2d(&[column(0), column(1), column(2), column(3)]))
-    }
-
-    fn parameters(&mut self) -> Result<Parameters, String> {
-        let (list, taken) = Parameters::read(&self.tokens[*self.at..], self.of)?;
-        *self.at += taken;
-        Ok(list)
-    }
-
-    /// On to the next directive.
-    fn skip(&mut self) {
-        while let Some(token) = self.tokens.get(*self.at) {
-            if matches!(&token.word, Word::Name(word) if word != "true" && word != "false") {
-                break;
-            }
-            *self.at += 1;
-        }
     }
 }

@@ -1,6 +1,7 @@
 //! Lists of parameters, `"type name" [values]`, each knowing whether it has been used.
 
 use std::cell::Cell;
+use std::rc::Rc;
 
 use super::tokens::{Token, Word};
 use crate::Builder;
@@ -13,16 +14,36 @@ pub(super) enum Values {
     Flags(Vec<bool>),
 }
 
-#[derive(Clone, Debug)]
+/// A parameter. Directives that have it by an attribute share it, and so its mark.
+#[derive(Debug)]
 pub(super) struct Parameter {
     pub kind: String,
     pub name: String,
     pub values: Values,
     pub place: String,
-    used: Cell<bool>,
+    used: Rc<Cell<bool>>,
 }
 
 impl Parameter {
+    /// Says that it has been used.
+    pub(super) fn mark(&self) {
+        self.used.set(true);
+    }
+
+    /// The mark of its use, which outlives it.
+    pub(super) fn used(&self) -> Rc<Cell<bool>> {
+        Rc::clone(&self.used)
+    }
+
+    /// How many values it has; a long text counts for more than one.
+    pub(super) fn size(&self) -> usize {
+        match &self.values {
+            Values::Numbers(numbers) => numbers.len(),
+            Values::Strings(strings) => strings.iter().map(|text| 1 + text.len() / 16).sum(),
+            Values::Flags(flags) => flags.len(),
+        }
+    }
+
     pub(super) fn numbers(&self) -> &[f64] {
         match &self.values {
             Values::Numbers(numbers) => numbers,
@@ -40,7 +61,12 @@ impl Parameter {
 
 /// The parameters of a directive.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Parameters(pub Vec<Parameter>);
+pub(super) struct Parameters {
+    /// Those that it states itself, then those that it has by attributes.
+    pub all: Vec<Rc<Parameter>>,
+    /// How many it states itself.
+    own: usize,
+}
 
 impl Parameters {
     /// Reads parameters as long as there are some; gives how many tokens they took.
@@ -55,20 +81,20 @@ impl Parameters {
             };
             at += 1;
             let values = values(tokens, &mut at, &place)?;
-            list.push(Parameter {
+            list.push(Rc::new(Parameter {
                 kind: kind.to_owned(),
                 name: name.to_owned(),
                 values,
                 place,
-                used: Cell::new(false),
-            });
+                used: Rc::default(),
+            }));
         }
-        Ok((Self(list), at))
+        Ok((Self { own: list.len(), all: list }, at))
     }
 
     pub(super) fn get(&self, name: &str) -> Option<&Parameter> {
-        let found = self.0.iter().find(|parameter| parameter.name == name)?;
-        found.used.set(true);
+        let found = self.all.iter().find(|parameter| parameter.name == name)?;
+        found.mark();
         Some(found)
     }
 
@@ -118,12 +144,12 @@ impl Parameters {
     }
 
     pub(super) fn mark_all(&self) {
-        self.0.iter().for_each(|parameter| parameter.used.set(true));
+        self.all.iter().for_each(|parameter| parameter.mark());
     }
 
-    /// Lists what was not used.
+    /// Lists what the directive states itself and was not used.
     pub(super) fn list_unused(&self, builder: &mut Builder<'_>) {
-        for parameter in self.0.iter().filter(|parameter| !parameter.used.get()) {
+        for parameter in self.all[..self.own].iter().filter(|parameter| !parameter.used.get()) {
             let what = format!("\"{} {}\" is ignored", parameter.kind, parameter.name);
             builder.leave_out(&parameter.place, what);
         }

@@ -10,11 +10,10 @@ use serde_json::{Value, json};
 
 use super::Reading;
 use super::parameters::Parameters;
-use super::spectrum::kind;
 use crate::Placed;
 use crate::medium::fill;
 use crate::missing;
-use crate::number::{Number, WITHOUT_DIRECTIONS, has_directions, has_image, without_directions};
+use crate::number::{Number, WITHOUT_DIRECTIONS, has_directions, has_image, has_measured_grain, without_directions};
 use crate::relief::{has_map, without_map};
 use crate::round::{DISK_OF_TRIANGLES, disk, sphere_turn};
 use crate::winding::turn_to_normals;
@@ -30,6 +29,7 @@ impl Reading<'_, '_> {
         self.shapes += 1;
         let name = format!("{shape} {}", self.shapes);
         let number = |key: &str, default: f64| Ok::<f64, String>(list.number(key)?.unwrap_or(default));
+        let mut listed = None;
         let (mut value, mut reach, mut has_uvs) = match shape {
             "sphere" => {
                 let radius = number("radius", 1.0)?;
@@ -50,17 +50,12 @@ impl Reading<'_, '_> {
                 (value, [[-radius, -radius, low], [radius, radius, high]], false)
             }
             "trianglemesh" | "bilinearmesh" => {
-                let mut mesh =
-                    if shape == "trianglemesh" { triangles(list, place)? } else { self.patches(list, place)? };
-                self.file_of(&mut mesh)
+                let mesh = if shape == "trianglemesh" { triangles(list, place)? } else { self.patches(list, place)? };
+                self.file_of(listed.insert(mesh))
             }
             "plymesh" => {
                 let file =
                     list.string("filename").ok_or_else(|| format!("{place}: it has no \"filename\""))?.to_owned();
-                if kind(&file) == "gz" {
-                    self.builder.leave_out(place, format!("\"{file}\" is compressed, and is left out"));
-                    return Ok(());
-                }
                 self.mesh(&file, place)?
             }
             other => {
@@ -68,6 +63,7 @@ impl Reading<'_, '_> {
                 return Ok(());
             }
         };
+        self.list_parts_of_round(shape, list, place)?;
         let mut map = self.to_world();
         if matches!(shape, "sphere" | "disk" | "cylinder") && self.follows_coordinates(list)? {
             (value, reach) = self.with_coordinates(&value, reach, &mut map, place);
@@ -95,6 +91,7 @@ impl Reading<'_, '_> {
                 detail.insert("opacity_image".to_owned(), image);
             }
         }
+        let mut emission = self.emission(shape, list, listed.as_ref(), place)?;
         list.list_unused(self.builder);
         let mut material = self.untextured(has_uvs, place);
         self.surround(place);
@@ -106,7 +103,6 @@ impl Reading<'_, '_> {
                 material = filled;
             }
         }
-        let mut emission = self.state.emission.as_deref().cloned();
         if !has_uvs && emission.as_ref().is_some_and(has_image) {
             let what = "it has no texture coordinates for the image of its emission: it does not emit";
             self.builder.leave_out(place, what);
@@ -131,7 +127,7 @@ impl Reading<'_, '_> {
         let known = &self.state.material;
         let own = known.value.as_str().and_then(|name| self.builder.materials.get(name)).unwrap_or(&known.value);
         let of_surface = has_image(own) || has_directions(own) || has_map(&known.detail);
-        let of_lamp = self.state.emission.as_deref().is_some_and(has_image);
+        let of_lamp = self.state.emission.as_deref().is_some_and(|lamp| has_image(&lamp.emission));
         Ok(of_surface || of_lamp || matches!(self.share(list, "alpha")?, Some(Number::Image(..))))
     }
 
@@ -171,6 +167,11 @@ impl Reading<'_, '_> {
                 .approximate(place, "it has no texture coordinates for the image of its material: it becomes grey");
             return json!({ "type": "lambert", "reflectance": 0.5 });
         }
+        if !has_uvs && has_measured_grain(own) {
+            let what = "it has no texture coordinates for the grain of its measured material: it becomes grey";
+            self.builder.approximate(place, what);
+            return json!({ "type": "lambert", "reflectance": 0.5 });
+        }
         let mut without = own.clone();
         if !has_uvs && without_directions(&mut without) {
             self.builder.leave_out(place, WITHOUT_DIRECTIONS);
@@ -181,10 +182,10 @@ impl Reading<'_, '_> {
 
     /// What is placed of a mesh file, which is read once.
     fn mesh(&mut self, file: &str, place: &str) -> Result<Placeable, String> {
-        if let Some(known) = self.meshes.get(file) {
+        if let Some((known, _)) = self.meshes.get(file) {
             return Ok(known.clone());
         }
-        let bytes = self.builder.bytes_of(file, place)?;
+        let bytes = self.inflated(file, place)?;
         let mut part = read_ply(&bytes).map_err(|e| format!("{place}: \"{file}\": {e}"))?;
         // The program has no materials that show them.
         part.mesh.colours.clear();
@@ -192,7 +193,8 @@ impl Reading<'_, '_> {
             self.builder.leave_out(place, format!("\"{file}\": {what}"));
         }
         let made = self.file_of(&mut part.mesh);
-        self.meshes.insert(file.to_owned(), made.clone());
+        let faces = face_count(&bytes).unwrap_or(part.mesh.triangles.len());
+        self.meshes.insert(file.to_owned(), (made.clone(), faces));
         Ok(made)
     }
 
@@ -214,8 +216,59 @@ impl Reading<'_, '_> {
         // Corners (0, 0), (1, 0), (0, 1) and (1, 1), in this order.
         mesh.triangles = corners.chunks_exact(4).flat_map(|c| [[c[0], c[1], c[3]], [c[0], c[3], c[2]]]).collect();
         self.builder.approximate(place, "a bilinear patch becomes two triangles");
+        if mesh.uvs.is_empty() {
+            // Without texture coordinates each patch has those of the unit square.
+            let of = |list: &[[f32; 3]]| match list.is_empty() {
+                true => Vec::new(),
+                false => corners.iter().map(|corner| list[*corner as usize]).collect(),
+            };
+            let patches = corners.len() as u32 / 4;
+            mesh = Mesh {
+                vertices: corners.iter().map(|corner| mesh.vertices[*corner as usize]).collect(),
+                normals: of(&mesh.normals),
+                uvs: [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]].repeat(corners.len() / 4),
+                triangles: (0..patches).flat_map(|i| [[0, 1, 3], [0, 3, 2]].map(|t| t.map(|c| 4 * i + c))).collect(),
+                ..Mesh::default()
+            };
+        }
         Ok(mesh)
     }
+
+    /// Lists which part of a round shape is whole here.
+    fn list_parts_of_round(&mut self, shape: &str, list: &Parameters, place: &str) -> Result<(), String> {
+        if !matches!(shape, "sphere" | "disk" | "cylinder") {
+            return Ok(());
+        }
+        let number = |key: &str, default: f64| Ok::<f64, String>(list.number(key)?.unwrap_or(default));
+        let mut stated = Vec::new();
+        if number("phimax", 360.0)? < 360.0 {
+            stated.push("phimax");
+        }
+        if shape == "disk" && number("innerradius", 0.0)? > 0.0 {
+            stated.push("innerradius");
+        }
+        if shape == "sphere" {
+            let radius = number("radius", 1.0)?;
+            let (low, high) = (number("zmin", -radius)?, number("zmax", radius)?);
+            stated.extend((low > -radius).then_some("zmin"));
+            stated.extend((high < radius).then_some("zmax"));
+        }
+        if !stated.is_empty() {
+            let what = format!("it is a whole {shape}, without its {}", stated.join(" and "));
+            self.builder.approximate(place, what);
+        }
+        Ok(())
+    }
+}
+
+/// How many faces a PLY file says that it has.
+fn face_count(ply: &[u8]) -> Option<usize> {
+    let lines = ply.split(|byte| *byte == b'\n').take_while(|line| !line.starts_with(b"end_header"));
+    let mut lines = lines.filter_map(|line| std::str::from_utf8(line).ok());
+    lines.find_map(|line| match line.split_whitespace().collect::<Vec<_>>()[..] {
+        ["element", "face", count] => count.parse().ok(),
+        _ => None,
+    })
 }
 
 fn triangles(list: &Parameters, place: &str) -> Result<Mesh, String> {

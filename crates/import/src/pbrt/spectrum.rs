@@ -52,12 +52,15 @@ impl Reading<'_, '_> {
                 }
             },
             ("texture", _) => {
-                let name = parameter.strings().first().cloned().unwrap_or_default();
-                let known = self.textures.get(&name).cloned();
-                let value = known.ok_or_else(|| format!("{place}: there is no texture \"{name}\""))?;
+                let texture = parameter.strings().first().cloned().unwrap_or_default();
+                let known = self.textures.get(&texture).cloned();
+                let value = known.ok_or_else(|| format!("{place}: there is no texture \"{texture}\""))?;
                 self.builder.spend(&value, &place)?;
                 if !textured && matches!(value["type"].as_str(), Some("image" | "checker")) {
-                    self.builder.approximate(&place, "the mean of the image is used");
+                    let kind = if value["type"] == "image" { "image" } else { "chequerboard" };
+                    let what =
+                        format!("\"{name}\" is the same everywhere: the mean of the {kind} \"{texture}\" is used");
+                    self.builder.approximate(&place, what);
                     value.get("mean").cloned().unwrap_or(json!(0.5))
                 } else {
                     value
@@ -82,6 +85,11 @@ impl Reading<'_, '_> {
                     return Ok(Some(Number::Value(0.0)));
                 }
                 return Ok(Some(number));
+            }
+            if let Some(name) = parameter.strings().first()
+                && let Some(numbers) = self.board_of_numbers(name)
+            {
+                return Ok(Some(numbers));
             }
         }
         let place = parameter.place.clone();
@@ -201,6 +209,7 @@ impl Reading<'_, '_> {
                     }
                 }
             }
+            "mix" => self.mixed(list, place)?,
             "imagemap" => self.image(list, place)?,
             "checkerboard" => self.checkerboard(list, place)?,
             other => {

@@ -75,9 +75,15 @@ fn facets_of_mitsuba_are_beckmann_s_unless_it_says_otherwise() {
             }
         }
     }
-    let other = "<scene version=\"3.0.0\"><shape type=\"sphere\"><bsdf type=\"roughconductor\">\
-                 <string name=\"distribution\" value=\"phong\"/></bsdf></shape></scene>";
-    assert!(refusal("xml", other).contains("\"phong\" is not a distribution of facets"));
+    // Of version 0.x.
+    let (kind, said) = rough(
+        "roughconductor",
+        "<string name=\"distribution\" value=\"phong\"/><float name=\"alpha\" value=\"0.25\"/>",
+    );
+    let expected =
+        Microfacets { distribution: FacetDistribution::Beckmann, masking: FacetMasking::Separable, ..0.25.into() };
+    assert_eq!(kind.microfacets().collect::<Vec<_>>(), [&expected]);
+    assert_eq!(said, ["line 1: the facets \"phong\" become Beckmann's of the same width"]);
     // A perfect mirror may be rough.
     let (kind, said) = rough("roughconductor", "<string name=\"material\" value=\"none\"/>");
     assert!(said.is_empty(), "{said:?}");

@@ -181,7 +181,7 @@ fn a_map_that_cannot_be_honoured_is_listed_with_its_line() {
         (
             "xml",
             bumpy(&bitmap.replace("chequers", "no")),
-            "line 4: the image is left out: line 4: \"no.png\" cannot be read: there is no no.png",
+            "line 4: the image is left out: \"no.png\" cannot be read: there is no no.png",
             false,
         ),
         (
@@ -208,7 +208,7 @@ fn a_map_that_cannot_be_honoured_is_listed_with_its_line() {
         (
             "pbrt",
             pbrt("", "Material \"diffuse\" \"string normalmap\" \"no.png\""),
-            "line 3: the normal map is left out: line 3: \"no.png\" cannot be read: there is no no.png",
+            "line 3: the normal map is left out: \"no.png\" cannot be read: there is no no.png",
             false,
         ),
         (

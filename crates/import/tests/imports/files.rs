@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 /// A model may require whole numbers as positions, with a stride of whole words.
 #[test]
-fn quantised_meshes_arrive_and_compressed_ones_are_refused() {
+fn quantised_meshes_arrive() {
     use base64::Engine as _;
     let corners: [[i16; 4]; 4] = [[-100, 0, 0, 7], [100, 0, 0, 7], [100, 50, 0, 7], [-100, 50, 0, 7]];
     let bytes: Vec<u8> = corners.iter().flatten().flat_map(|v| v.to_le_bytes()).collect();
@@ -17,21 +17,14 @@ fn quantised_meshes_arrive_and_compressed_ones_are_refused() {
     model["buffers"].as_array_mut().unwrap().push(json!({ "byteLength": bytes.len(), "uri": uri }));
     model["bufferViews"][0] = json!({ "buffer": 1, "byteLength": 32, "byteStride": 8 });
     model["accessors"][0] = json!({ "bufferView": 0, "componentType": 5122, "count": 4, "type": "VEC3", "min": [-100, 0, 0], "max": [100, 50, 0] });
-    for extension in ["KHR_mesh_quantization", "KHR_draco_mesh_compression", "EXT_meshopt_compression"] {
-        model["extensionsRequired"] = json!([extension]);
-        model["extensionsUsed"].as_array_mut().unwrap().push(json!(extension));
-        let read = imported(&model);
-        if extension != "KHR_mesh_quantization" {
-            assert!(read.unwrap_err().contains(extension));
-            continue;
-        }
-        let scene = scene(&read.unwrap());
-        let vertices = scene.placed_objects().filter_map(|object| match &object.shape {
-            Shape::Mesh(mesh) => Some(mesh.vertices[2]),
-            _ => None,
-        });
-        assert!(vertices.into_iter().any(|v| v == [100.0, 50.0, 0.0]));
-    }
+    model["extensionsRequired"] = json!(["KHR_mesh_quantization"]);
+    model["extensionsUsed"].as_array_mut().unwrap().push(json!("KHR_mesh_quantization"));
+    let scene = scene(&imported(&model).unwrap());
+    let vertices = scene.placed_objects().filter_map(|object| match &object.shape {
+        Shape::Mesh(mesh) => Some(mesh.vertices[2]),
+        _ => None,
+    });
+    assert!(vertices.into_iter().any(|v| v == [100.0, 50.0, 0.0]));
 }
 
 #[test]
@@ -88,11 +81,7 @@ fn files_that_contradict_themselves_are_refused() {
         let near = |_: &str| Ok(format!("newmtl red\n{colour}\n").into_bytes());
         let imported = import_bytes("obj", obj, &near, "", "a.obj").unwrap();
         let said: Vec<_> = imported.left_out.iter().map(|l| l.what.as_str()).collect();
-        assert_eq!(
-            !said.iter().any(|what| what.contains("line 2: a colour has three numbers")),
-            right,
-            "{colour} {said:?}"
-        );
+        assert_eq!(!said.iter().any(|what| what.contains("is no colour")), right, "{colour} {said:?}");
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::{PNG, glb, imported, model, nothing, scene};
 use etalon_import::{Imported, import_bytes};
-use etalon_scene::{LightKind, MaterialKind, Projection, SpectrumTexture};
+use etalon_scene::{LightKind, MaterialKind, Projection, SpectrumTexture, UvMap};
 use proptest::prelude::*;
 use serde_json::json;
 
@@ -49,7 +49,7 @@ fn a_mesh_alone_shows_the_colours_of_its_vertices_or_faces() {
 fn obj_materials_become_paint_mirrors_glass_and_lamps() {
     let obj = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\n\
         usemtl paint\nf 1/1 2/2 3/3\nusemtl mirror\nf 1 2 3\nusemtl glass\nf 1 2 3\nusemtl lamp\nf 1 2 3\nusemtl bare\nf 1 2 3\n";
-    let mtl = "newmtl paint\nKd 0.5 0.25 1\nmap_Kd -s 1 1 1 sub\\tiles.png\nKs 1 1 1\nmap_Bump b.png\n\
+    let mtl = "newmtl paint\nKd 0.5 0.25 1\nmap_Kd -s 2 1 1 -t 0.5 sub\\tiles.png\nKs 1 1 1\nmap_Bump b.png\n\
         newmtl mirror\nKd 0 0 0\nKs 0.9 0.9 0.9\nillum 3\nnewmtl glass\nd 0.1\nNi 1.45\nillum 7\nnewmtl lamp\nKe 3 2 1\nKd 0 0 0\n";
     let near = |name: &str| match name {
         "a.mtl" => Ok(mtl.as_bytes().to_vec()),
@@ -61,12 +61,13 @@ fn obj_materials_become_paint_mirrors_glass_and_lamps() {
     let kind = |i: usize| &scene.materials[scene.objects[i].material].kind;
     let MaterialKind::Plastic { reflectance: SpectrumTexture::Image(image), .. } = kind(0) else { panic!("an image") };
     assert_eq!(image.factor, [0.5, 0.25, 1.0]);
+    assert_eq!(image.uv_map, UvMap::scaled([2.0, 1.0], [0.0, 0.0]));
     assert!(matches!(kind(1), MaterialKind::Mirror { .. }));
     let MaterialKind::Dielectric { interior, .. } = kind(2) else { panic!("glass") };
     assert!((interior.eval(500.0) - 1.45).abs() < 1e-6);
     assert!(scene.objects[3].emission.is_some() && scene.objects[4].emission.is_none());
     let said: Vec<String> = imported.left_out.iter().map(|l| format!("{}: {}", l.place, l.what)).collect();
-    for part in ["map_bump", "Ks", "options of map_Kd"] {
+    for part in ["map_bump", "Ks", "the option -t of map_Kd"] {
         assert!(said.iter().any(|line| line.contains("\"paint\"") && line.contains(part)), "{part}: {said:#?}");
     }
     // Without its library it is grey, and says so.

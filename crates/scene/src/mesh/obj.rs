@@ -1,14 +1,20 @@
 //! OBJ files and their material libraries (MTL).
 
+mod lines;
+mod mtl;
+mod smoothing;
+
 use std::cell::{Cell, RefCell};
-use std::io::{self, BufRead, Read};
+use std::collections::HashSet;
 use std::path::Path;
 
+use etalon_optics::colour::srgb_decode;
 use tobj::LoadOptions;
 
 use super::polygon::Cut;
 use super::{MeshError, Part, check_vertex};
 use crate::model::Mesh;
+use lines::{Lines, Survey};
 
 /// A material of a material library, as far as it says something.
 pub type ObjMaterial = tobj::Material;
@@ -20,8 +26,14 @@ pub struct ObjFile {
     pub parts: Vec<Part>,
     /// The materials that the parts name.
     pub materials: Vec<ObjMaterial>,
-    /// Material libraries that could not be read, each with why.
+    /// Material libraries that could not be read, each with why, and their lines that are not honoured.
     pub missing_libraries: Vec<String>,
+    /// Materials that faces name and no library has.
+    pub unknown_materials: Vec<String>,
+    /// Statements of the file that are not used, each in a sentence without a full stop.
+    pub left_out: Vec<String>,
+    /// The smoothing groups of the triangles of each part, 0 for none; nothing for a part without any.
+    smoothing: Vec<Vec<u32>>,
 }
 
 /// Reads an OBJ file, its polygons cut in this way. `library` gives the bytes of a material library by the name that the file has for it.
@@ -33,30 +45,21 @@ pub fn read_obj(
     cut: Cut,
     library: impl Fn(&Path) -> Result<Vec<u8>, String>,
 ) -> Result<ObjFile, MeshError> {
-    check_faces(bytes)?;
+    let survey = Survey::of(bytes)?;
     let line = Cell::new(0);
     let missing = RefCell::new(Vec::new());
-    let mut reader = Lines { bytes, line: &line };
-    // Polygons are cut here, and points and lines have no surface.
+    // However often a file names a library, it is read once.
+    let read = RefCell::new(HashSet::new());
+    let library = |path: &Path| if read.borrow_mut().insert(path.to_owned()) { library(path) } else { Ok(Vec::new()) };
+    let mut reader = Lines::new(bytes, &survey, &line);
+    // Polygons are cut here.
     let options = LoadOptions { single_index: true, triangulate: false, ignore_points: true, ignore_lines: true };
     let loaded = tobj::load_obj_buf(&mut reader, &options, |path| {
-        let give_up = |why: String| {
-            missing.borrow_mut().push(why);
-            Ok(Default::default())
-        };
-        match library(path) {
-            Err(why) => give_up(why),
-            Ok(bytes) => {
-                if let Some(line) = short_colour(&bytes) {
-                    return give_up(format!("{}: line {line}: a colour has three numbers", path.display()));
-                }
-                let library_line = Cell::new(0);
-                match tobj::load_mtl_buf(&mut Lines { bytes: &bytes, line: &library_line }) {
-                    Ok(materials) => Ok(materials),
-                    Err(error) => give_up(format!("{}: line {}: {error}", path.display(), library_line.get())),
-                }
-            }
-        }
+        let (materials, left_out) = libraries(path, &library);
+        missing.borrow_mut().extend(left_out);
+        // Of those with the same name the first counts.
+        let places = materials.iter().enumerate().rev().map(|(i, material)| (material.name.clone(), i)).collect();
+        Ok((materials, places))
     });
     let (models, materials) = loaded.map_err(|error| {
         use tobj::LoadError as E;
@@ -68,19 +71,63 @@ pub fn read_obj(
         }
     })?;
     let materials = materials.unwrap_or_default();
-    let mut parts = Vec::with_capacity(models.len());
+    let mut file = ObjFile { missing_libraries: missing.into_inner(), left_out: survey.left_out, ..ObjFile::default() };
+    let mut groups = survey.smoothing.into_iter();
     for model in models {
         let material = model.mesh.material_id.and_then(|id| materials.get(id)).map(|m| m.name.clone());
-        if let Some(part) = part(model, material, cut)? {
-            parts.push(part);
+        let (part, smoothing) = part(model, material, cut, &mut groups)?;
+        if !part.mesh.triangles.is_empty() {
+            file.parts.push(part);
+            file.smoothing.push(smoothing);
         }
     }
-    Ok(ObjFile { parts, materials, missing_libraries: missing.into_inner() })
+    let known: HashSet<&str> = materials.iter().map(|material| material.name.as_str()).collect();
+    file.unknown_materials = survey.used.into_iter().filter(|name| !known.contains(name.as_str())).collect();
+    file.materials = materials;
+    Ok(file)
 }
 
-fn part(model: tobj::Model, material: Option<String>, cut: Cut) -> Result<Option<Part>, MeshError> {
+/// The materials of a library, or of several in a row, and what of them is not honoured.
+fn libraries(path: &Path, library: &impl Fn(&Path) -> Result<Vec<u8>, String>) -> (Vec<ObjMaterial>, Vec<String>) {
+    let of = |path: &Path| library(path).map(|bytes| mtl::read_mtl(&bytes, &path.to_string_lossy()));
+    let whole = match of(path) {
+        Ok(found) => return found,
+        Err(why) => (Vec::new(), vec![why]),
+    };
+    // The name of a file may have spaces.
+    let stated = path.to_string_lossy();
+    let mut names: Vec<String> = Vec::new();
+    for word in stated.split_whitespace() {
+        match names.last_mut() {
+            Some(name) if !name.to_ascii_lowercase().ends_with(".mtl") => *name += &format!(" {word}"),
+            _ => names.push(word.to_owned()),
+        }
+    }
+    if names.len() < 2 {
+        return whole;
+    }
+    let (mut materials, mut left_out) = (Vec::new(), Vec::new());
+    for name in names {
+        match of(Path::new(&name)) {
+            Ok((more, what)) => {
+                materials.extend(more);
+                left_out.extend(what);
+            }
+            Err(why) => left_out.push(why),
+        }
+    }
+    (materials, left_out)
+}
+
+/// A part, perhaps without triangles, and the smoothing group of each triangle, taken from those of the faces.
+fn part(
+    model: tobj::Model,
+    material: Option<String>,
+    cut: Cut,
+    groups: &mut impl Iterator<Item = u32>,
+) -> Result<(Part, Vec<u32>), MeshError> {
     let name = Some(model.name).filter(|name| !name.is_empty() && name != "unnamed_object");
-    let tobj::Mesh { positions, normals, texcoords, indices, face_arities, .. } = model.mesh;
+    let tobj::Mesh { positions, normals, texcoords, indices, face_arities, vertex_color, .. } = model.mesh;
     let whole = |list: &[f32], each: usize| list.chunks_exact(each).len();
     let count = whole(&positions, 3);
     let fail = |message: String| {
@@ -92,7 +139,7 @@ fn part(model: tobj::Model, material: Option<String>, cut: Cut) -> Result<Option
     let mut mesh = Mesh {
         vertices: positions.chunks_exact(3).map(|p| [p[0], p[1], p[2]].map(f64::from)).collect(),
         triangles: Vec::new(),
-        // The reader leaves them out where only some of the faces have them.
+        // The reader has none where a part has none.
         normals: match whole(&normals, 3) == count {
             true => normals.chunks_exact(3).map(|n| [n[0], n[1], n[2]]).collect(),
             false => Vec::new(),
@@ -101,11 +148,25 @@ fn part(model: tobj::Model, material: Option<String>, cut: Cut) -> Result<Option
             true => texcoords.chunks_exact(2).map(|t| [t[0], t[1]]).collect(),
             false => Vec::new(),
         },
-        colours: Vec::new(),
+        colours: colours(&vertex_color),
     };
+    if mesh.colours.len() != count {
+        mesh.colours.clear();
+    }
     for i in 0..mesh.vertices.len() {
         check_vertex(i, mesh.vertices[i], mesh.normals.get_mut(i)).map_err(&fail)?;
     }
+    // What stands for missing normals is (0, 0, 0), for missing texture coordinates NaN.
+    if mesh.normals.iter().flatten().all(|v| *v == 0.0) {
+        mesh.normals.clear();
+    }
+    let is_missing = |uv: &[f32; 2]| uv.iter().all(|v| v.is_nan());
+    let missing: Vec<bool> = mesh.uvs.iter().map(is_missing).collect();
+    let some_missing = missing.contains(&true);
+    if missing.iter().all(|missing| *missing) {
+        mesh.uvs.clear();
+    }
+    mesh.uvs.iter_mut().filter(|uv| is_missing(uv)).for_each(|uv| *uv = [0.0; 2]);
     if let Some(i) = mesh.uvs.iter().position(|uv| !uv.iter().all(|v| v.is_finite())) {
         return Err(fail(format!("the texture coordinates of vertex {i} are {:?}", mesh.uvs[i])));
     }
@@ -114,83 +175,30 @@ fn part(model: tobj::Model, material: Option<String>, cut: Cut) -> Result<Option
         true => vec![3; indices.len() / 3],
         false => face_arities.iter().map(|&n| n as usize).collect(),
     };
+    let (mut smoothing, mut bare, faces) = (Vec::new(), 0_usize, arities.len());
     for arity in arities {
         let corners = &indices[start..start + arity];
         cut.triangulate(corners, |v| mesh.vertices[v as usize], &mut mesh.triangles);
+        smoothing.resize(mesh.triangles.len(), groups.next().unwrap_or(0));
+        bare += usize::from(some_missing && corners.iter().any(|v| missing[*v as usize]));
         start += arity;
     }
-    Ok((!mesh.triangles.is_empty()).then(|| Part { name, material, mesh, ..Part::default() }))
-}
-
-/// The number of the first line of a material library that states a colour by fewer than three numbers, which the library that
-/// reads them does not expect.
-fn short_colour(bytes: &[u8]) -> Option<usize> {
-    let is_short = |line: &[u8]| {
-        let text = String::from_utf8_lossy(line);
-        let mut words = text.split_whitespace();
-        matches!(words.next(), Some("Ka" | "Kd" | "Ks" | "Ke")) && words.count() < 3
-    };
-    bytes.split(|&b| b == b'\n').position(is_short).map(|i| i + 1)
-}
-
-/// Refuses faces whose numbers count from nothing, or reach back before the first: the library that reads them computes with
-/// such numbers modulo 2⁶⁴ and may find others in their place.
-fn check_faces(bytes: &[u8]) -> Result<(), MeshError> {
-    const NAMES: [&str; 3] = ["vertex", "texture coordinate", "normal"];
-    let mut counts = [0_i64; 3];
-    for (i, line) in bytes.split(|&b| b == b'\n').enumerate() {
-        // What is no text or no number is left to the reader, which refuses it.
-        let mut words = std::str::from_utf8(line).unwrap_or_default().split_whitespace();
-        match words.next() {
-            Some("v") => counts[0] += 1,
-            Some("vt") => counts[1] += 1,
-            Some("vn") => counts[2] += 1,
-            Some("f" | "l") => {
-                for corner in words {
-                    for (k, number) in corner.split('/').enumerate().take(3) {
-                        let fail =
-                            |why: &str| MeshError::at_line(i + 1, format!("a face names {} {number}, {why}", NAMES[k]));
-                        match number.parse::<i64>() {
-                            Ok(0) => return Err(fail("but the first has the number 1")),
-                            Ok(n) if n < -counts[k] => {
-                                return Err(fail(&format!("where there are only {} so far", counts[k])));
-                            }
-                            Ok(n) if n > i64::from(u32::MAX) => return Err(fail("more than a mesh can have")),
-                            _ => {}
-                        }
-                    }
-                }
-            }
-            _ => {}
-        }
+    let mut left_out = Vec::new();
+    if bare > 0 && !mesh.uvs.is_empty() {
+        left_out
+            .push(format!("{bare} of its {faces} faces have no texture coordinates: images lie there as at (0, 0)"));
     }
-    Ok(())
+    if smoothing.iter().all(|group| *group == 0) {
+        smoothing.clear();
+    }
+    Ok((Part { name, material, mesh, left_out, ..Part::default() }, smoothing))
 }
 
-/// Bytes that count the lines which have been taken of them.
-struct Lines<'a> {
-    bytes: &'a [u8],
-    line: &'a Cell<usize>,
-}
-
-impl Read for Lines<'_> {
-    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        let n = self.bytes.read(buffer)?;
-        let newlines = buffer[..n].iter().filter(|&&b| b == b'\n').count();
-        self.line.set(self.line.get() + newlines);
-        Ok(n)
+/// Colours of vertices, which files state with the curve of sRGB; none if all are white.
+fn colours(stated: &[f32]) -> Vec<[f32; 3]> {
+    if stated.iter().all(|channel| *channel == 1.0) {
+        return Vec::new();
     }
-}
-
-impl BufRead for Lines<'_> {
-    fn fill_buf(&mut self) -> io::Result<&[u8]> {
-        // A line at a time, so that the count is that of the line in hand.
-        let end = self.bytes.iter().position(|&b| b == b'\n').map_or(self.bytes.len(), |at| at + 1);
-        Ok(&self.bytes[..end])
-    }
-
-    fn consume(&mut self, amount: usize) {
-        self.line.set(self.line.get() + usize::from(amount > 0));
-        self.bytes = &self.bytes[amount..];
-    }
+    let linear = |channel: f32| srgb_decode(f64::from(channel)) as f32;
+    stated.chunks_exact(3).map(|c| [c[0], c[1], c[2]].map(linear)).collect()
 }
