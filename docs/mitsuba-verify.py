@@ -143,6 +143,10 @@ class Translator:
     def object(self, thing):
         bsdf = self.bsdf(thing["material"])
         emission = radiometric(thing["emission"]) if "emission" in thing else None
+        if "opacity" in thing:
+            if emission is not None or not isinstance(thing["opacity"], (int, float)):
+                raise Unsupported("an opacity of a lamp, or by an image")
+            bsdf = {"type": "mask", "opacity": float(thing["opacity"]), "nested": bsdf}
         if emission is None:
             return [shape | {"bsdf": bsdf} for shape in self.shapes(thing["shape"], False)]
         lit = {"bsdf": bsdf, "emitter": {"type": "area", "radiance": self.number(emission["radiance"])}}
@@ -208,6 +212,8 @@ class Translator:
         s = radiometric(s)
         if s["type"] not in ("environment", "point", "directional") or "sky" in s or "image" in s:
             raise Unsupported("a light of the type " + s["type"])
+        if "slide" in s:
+            raise Unsupported("a lamp with a slide")
         if s["type"] == "environment":
             return {"type": "constant", "radiance": self.number(s["radiance"])}
         if s["type"] == "point":
