@@ -98,7 +98,7 @@ impl Reading<'_, '_> {
 
     pub(super) fn colour_space(&mut self, name: &str, place: &str) {
         if !name.eq_ignore_ascii_case("srgb") {
-            let what = format!("the colours that follow are of the space \"{name}\": they are taken for those of sRGB");
+            let what = format!("the colours that follow are of the space \"{name}\": they are read as those of sRGB");
             self.builder.approximate(place, what);
         }
     }

@@ -270,7 +270,7 @@ fn what_stands_for_spaces_metals_and_parts_of_shapes_is_listed() {
     assert_eq!(
         said(&imported),
         [
-            "line 3: the colours that follow are of the space \"rec2020\": they are taken for those of sRGB",
+            "line 3: the colours that follow are of the space \"rec2020\": they are read as those of sRGB",
             "line 4: the metal \"metal-CuZn-eta\" (brass) is not known: it becomes copper",
             "line 5: it is a whole sphere, without its phimax and zmax",
             "line 6: it is a whole disk, without its innerradius",
