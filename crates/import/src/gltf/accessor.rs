@@ -4,6 +4,10 @@ use etalon_scene::mesh::MAX_ELEMENTS;
 use gltf::accessor::{DataType, Dimensions};
 use gltf::{Accessor, buffer};
 
+/// The most elements of an accessor without data: they are zeros, for which the file needs no bytes.
+pub(super) const MOST_WITHOUT_DATA: usize = 1 << 24;
+pub(super) const TOO_MANY_WITHOUT_DATA: &str = "it has more than 2^24 elements without data";
+
 /// All numbers of an accessor, `N` an element, 16 of a matrix by columns; normalised integers as numbers from 0 or −1 to 1.
 pub(super) fn numbers<const N: usize>(accessor: &Accessor<'_>, buffers: &[Vec<u8>]) -> Result<Vec<[f64; N]>, String> {
     let place = format!("$.accessors[{}]", accessor.index());
@@ -41,8 +45,7 @@ pub(super) fn numbers<const N: usize>(accessor: &Accessor<'_>, buffers: &[Vec<u8
                 numbers.push(std::array::from_fn(|k| number(&bytes[at + k * kind.size()..], kind, normalized)));
             }
         }
-        // Zeros, which cost memory that no byte of the file stands for.
-        None if count > 1 << 24 => return Err(fail("it has more than 2^24 elements without data")),
+        None if count > MOST_WITHOUT_DATA => return Err(fail(TOO_MANY_WITHOUT_DATA)),
         None => numbers.resize(count, [0.0; N]),
     }
     if let Some(sparse) = accessor.sparse() {

@@ -50,8 +50,9 @@ pub(super) struct Animated {
 }
 
 impl Animated {
-    /// Reads the animation that a moment asks for; the others are listed, and all without a moment. `counted` are the numbers of the channels of
-    /// each animation in the file: those that lead to no node are left out before.
+    /// Reads the animation that a moment asks for; the others are listed, and all without a moment.
+    ///
+    /// `counted`: for each animation, the index in the file of each channel kept. Channels that lead to no node were removed before.
     pub(super) fn read(
         file: &Document,
         counted: &[Vec<usize>],

@@ -56,7 +56,7 @@ const IMAGES: [(&str, &str, &str); 4] = [
     ("MSFT_texture_dds", "DDS", "an image editor"),
 ];
 
-/// By which animations lead to anything, not to nodes alone.
+/// Lets animations change any property, not only those of nodes.
 const POINTER: &str = "KHR_animation_pointer";
 
 /// What a picture lacks without an extension.

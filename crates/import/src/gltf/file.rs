@@ -11,13 +11,15 @@ use crate::Builder;
 
 /// Bytes of the header of a binary file.
 const GLB_HEADER: u32 = 12;
+/// The most bytes of all buffers of a model: many may name the same file.
+const MOST_IN_BUFFERS: u64 = 1 << 32;
 
 /// The file with all that is compressed written out, checked by the library; and the bytes of every buffer.
 pub(super) fn parse(bytes: &[u8], builder: &Builder<'_>) -> Result<(Document, Vec<Vec<u8>>), String> {
     let bytes = extensions::without_pointers(bytes)?;
     let Gltf { document, blob } = Gltf::from_slice_without_validation(&bytes).map_err(|error| error.to_string())?;
     let mut root = document.into_json();
-    let mut buffers = buffers(&root, blob.as_deref(), builder)?;
+    let mut buffers = buffers(&root, blob, builder)?;
     compression::undo(&mut root, &mut buffers)?;
     // They were looked at before.
     root.extensions_required.clear();
@@ -98,22 +100,39 @@ pub(super) fn check_lights(file: &Document) -> Result<(), String> {
 }
 
 /// The bytes of every buffer; those of the binary part are `blob`.
-fn buffers(root: &Root, blob: Option<&[u8]>, builder: &Builder<'_>) -> Result<Vec<Vec<u8>>, String> {
-    let bytes_of = |(index, buffer): (usize, &Buffer)| {
-        let place = format!("$.buffers[{index}]");
-        if compression::is_placeholder(buffer) {
-            return Ok(Vec::new());
+fn buffers(root: &Root, mut blob: Option<Vec<u8>>, builder: &Builder<'_>) -> Result<Vec<Vec<u8>>, String> {
+    let mut buffers = Vec::with_capacity(root.buffers.len());
+    let mut total = 0;
+    for (index, buffer) in root.buffers.iter().enumerate() {
+        let bytes = buffer_bytes(index, buffer, &mut blob, builder);
+        let bytes = bytes.map_err(|why| format!("$.buffers[{index}]: {why}"))?;
+        total += bytes.len() as u64;
+        if total > MOST_IN_BUFFERS {
+            return Err(format!("$.buffers[{index}]: up to here the buffers have more than 4 GiB"));
         }
-        let bytes = match &buffer.uri {
-            None => blob.map(<[u8]>::to_vec).ok_or_else(|| format!("{place}: there is no binary part")),
-            Some(uri) => resource(uri, builder).map_err(|why| format!("{place}: {why}")),
-        }?;
-        match (bytes.len() as u64) < buffer.byte_length.0 {
-            true => Err(format!("{place}: it has {} bytes, and should have {}", bytes.len(), buffer.byte_length.0)),
-            false => Ok(bytes),
-        }
+        buffers.push(bytes);
+    }
+    Ok(buffers)
+}
+
+fn buffer_bytes(
+    index: usize,
+    buffer: &Buffer,
+    blob: &mut Option<Vec<u8>>,
+    builder: &Builder<'_>,
+) -> Result<Vec<u8>, String> {
+    if compression::is_placeholder(buffer) {
+        return Ok(Vec::new());
+    }
+    let bytes = match &buffer.uri {
+        None if index == 0 => blob.take().ok_or("there is no binary part")?,
+        None => return Err("only the first buffer may be the binary part".to_owned()),
+        Some(uri) => resource(uri, builder)?,
     };
-    root.buffers.iter().enumerate().map(bytes_of).collect()
+    match (bytes.len() as u64) < buffer.byte_length.0 {
+        true => Err(format!("it has {} bytes, and should have {}", bytes.len(), buffer.byte_length.0)),
+        false => Ok(bytes),
+    }
 }
 
 /// The bytes that a URI stands for: data in itself, or a file beside the model.

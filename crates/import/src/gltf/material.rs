@@ -11,7 +11,7 @@ use super::diffuse_transmission;
 use super::extensions;
 use super::image::TextureTransform;
 use super::iridescence::Iridescence;
-use super::number::{Number, data_image};
+use super::number::{Number, Ranges, data_image};
 use super::sheen::Fit;
 use super::specular::Specular;
 use super::transmission::{self, Passes};
@@ -51,6 +51,10 @@ pub(super) struct Materials<'d> {
     pub(super) fits: HashMap<u32, Fit>,
     known: HashMap<Option<usize>, Look>,
     pub(super) images: HashMap<usize, Option<(String, [f64; 3])>>,
+    /// By image; `None` is one that cannot be read.
+    pub(super) ranges: HashMap<usize, Option<Ranges>>,
+    /// By image: its mean colour and the mean of its alpha; `None` is one that cannot be read.
+    pub(super) means: HashMap<usize, Option<([f64; 3], f64)>>,
     /// Those of triangles that glTF shows from their front only.
     pub(super) single_sided: HashSet<Option<usize>>,
     /// Whether the material at hand makes use of alpha.
@@ -59,8 +63,16 @@ pub(super) struct Materials<'d> {
 
 impl<'d> Materials<'d> {
     pub(super) fn new(document: &'d gltf::Document) -> Self {
-        let (fits, known, images) = (HashMap::new(), HashMap::new(), HashMap::new());
-        Self { document, fits, known, images, single_sided: HashSet::new(), alpha_counts: false }
+        Self {
+            document,
+            fits: HashMap::new(),
+            known: HashMap::new(),
+            images: HashMap::new(),
+            ranges: HashMap::new(),
+            means: HashMap::new(),
+            single_sided: HashSet::new(),
+            alpha_counts: false,
+        }
     }
 
     pub(super) fn of(

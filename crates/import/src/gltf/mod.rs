@@ -75,6 +75,7 @@ pub(super) fn import(bytes: &[u8], options: &Options, builder: &mut Builder<'_>)
         skeletons: Skeletons::new(&file, &animated),
         parts: HashMap::new(),
         shape_groups: HashMap::new(),
+        made: 0,
         bent: 0,
         skinned: Vec::new(),
         visited: vec![false; file.nodes().count()],
@@ -116,7 +117,9 @@ struct Walk<'w, 'b> {
     parts: HashMap<(usize, usize, Shape), Option<MadePart>>,
     /// The groups of parts that are placed again and again.
     shape_groups: HashMap<(usize, usize, Shape), String>,
-    /// Vertices and triangles of parts that are bent.
+    /// Vertices and triangles of all parts.
+    made: usize,
+    /// Those of parts that are bent.
     bent: usize,
     /// Primitives that joints place, with their names.
     skinned: Vec<(gltf::Mesh<'w>, gltf::Primitive<'w>, String, Shape)>,

@@ -12,7 +12,7 @@ use crate::Builder;
 
 impl Materials<'_> {
     /// The image of roughness and metalness: as it is laid over a surface, unless it has other texture coordinates than what else is
-    /// laid, and its texels.
+    /// laid, and the ranges of its channels.
     pub(super) fn numbers(
         &mut self,
         surface: &gltf::material::PbrMetallicRoughness<'_>,
@@ -20,16 +20,25 @@ impl Materials<'_> {
         uv_set: &mut Option<u32>,
         buffers: &[Vec<u8>],
         builder: &mut Builder<'_>,
-    ) -> Option<(Option<Value>, Image)> {
+    ) -> Option<(Option<Value>, Ranges)> {
         let info = surface.metallic_roughness_texture()?;
         let at = format!("{place}.pbrMetallicRoughness.metallicRoughnessTexture");
         let (image, set) = self.image(&info, &at, buffers, builder)?;
-        let texels = linear(&info.texture(), buffers, builder)?;
+        let ranges = self.ranges(&info.texture(), buffers, builder)?;
         if *uv_set.get_or_insert(set) != set {
             builder.approximate(at, "it uses another set of texture coordinates than the colour: its mean is used");
-            return Some((None, texels));
+            return Some((None, ranges));
         }
-        Some((Some(data_image(image)), texels))
+        Some((Some(data_image(image)), ranges))
+    }
+
+    /// The ranges of a texture's channels as numbers; `None` if it cannot be read, which is said where it is drawn.
+    fn ranges(&mut self, texture: &gltf::Texture<'_>, buffers: &[Vec<u8>], builder: &Builder<'_>) -> Option<Ranges> {
+        let index = texture.source()?.index();
+        *self.ranges.entry(index).or_insert_with(|| {
+            let bytes = bytes(texture, buffers, builder)?;
+            Image::decode(&bytes, Encoding::Linear).ok().map(|(image, _)| Ranges::of(&image))
+        })
     }
 
     /// A factor of an extension, on a channel of its image if it names one.
@@ -49,7 +58,7 @@ impl Materials<'_> {
             _ => None,
         };
         let Some((texture, image, set)) = image else { return Number::new(factor, channel, None) };
-        let Some(texels) = linear(&texture, buffers, builder) else { return Number::new(factor, channel, None) };
+        let Some(ranges) = self.ranges(&texture, buffers, builder) else { return Number::new(factor, channel, None) };
         let laid = if *uv_set.get_or_insert(set) == set {
             Some(data_image(image))
         } else {
@@ -57,7 +66,7 @@ impl Materials<'_> {
                 .approximate(at, "it uses another set of texture coordinates than the first image: its mean is used");
             None
         };
-        Number::new(factor, channel, Some(&(laid, texels)))
+        Number::new(factor, channel, Some(&(laid, ranges)))
     }
 }
 
@@ -97,6 +106,26 @@ pub(super) fn data_image(mut image: Value) -> Value {
     image
 }
 
+/// The range and the mean of each channel of an image.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ranges {
+    least: [f64; 3],
+    most: [f64; 3],
+    mean: [f64; 3],
+}
+
+impl Ranges {
+    fn of(image: &Image) -> Self {
+        let (mut least, mut most) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        for texel in image.linear_texels() {
+            for c in 0..3 {
+                (least[c], most[c]) = (least[c].min(texel[c]), most[c].max(texel[c]));
+            }
+        }
+        Self { least, most, mean: image.mean() }
+    }
+}
+
 /// A number of a material.
 pub(super) enum Number {
     Value(f64),
@@ -105,16 +134,13 @@ pub(super) enum Number {
 
 impl Number {
     /// A factor on a channel of an image, if there is one: an image, where the channel varies and can be laid.
-    pub(super) fn new(factor: f64, channel: &str, numbers: Option<&(Option<Value>, Image)>) -> Self {
+    pub(super) fn new(factor: f64, channel: &str, numbers: Option<&(Option<Value>, Ranges)>) -> Self {
         let factor = factor.clamp(0.0, 1.0);
-        let Some((laid, image)) = numbers else { return Self::Value(factor) };
+        let Some((laid, ranges)) = numbers else { return Self::Value(factor) };
         let c = ["red", "green", "blue"].iter().position(|name| *name == channel).unwrap_or(0);
-        let [least, most] = image
-            .linear_texels()
-            .fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], texel| [least.min(texel[c]), most.max(texel[c])]);
         match laid {
-            _ if least == most => Self::Value(factor * least.clamp(0.0, 1.0)),
-            None => Self::Value(factor * image.mean()[c].clamp(0.0, 1.0)),
+            _ if ranges.least[c] == ranges.most[c] => Self::Value(factor * ranges.least[c].clamp(0.0, 1.0)),
+            None => Self::Value(factor * ranges.mean[c].clamp(0.0, 1.0)),
             Some(laid) => {
                 let mut laid = laid.clone();
                 laid["channel"] = json!(channel);
@@ -165,11 +191,6 @@ impl Number {
         }
         matches!(self, Self::Image(_))
     }
-}
-
-/// A texture's texels as numbers; `None` if it cannot be read, which is said where it is drawn.
-fn linear(texture: &gltf::Texture<'_>, buffers: &[Vec<u8>], builder: &Builder<'_>) -> Option<Image> {
-    Image::decode(&bytes(texture, buffers, builder)?, Encoding::Linear).ok().map(|(image, _)| image)
 }
 
 /// The bytes of a texture's file.

@@ -105,8 +105,14 @@ impl<'w> Walk<'w, '_> {
             return Ok(None);
         }
         let colours = self.colours(primitive, alpha, count, place)?;
+        // A few bytes may name the same accessors again and again.
+        let elements = count + triangles.len();
+        self.made += elements;
+        if self.made > MAX_ELEMENTS {
+            return Err(fail("up to here all meshes have more than 2^29 vertices and triangles"));
+        }
         if *shape != Shape::default() {
-            self.bent += count + triangles.len();
+            self.bent += elements;
             if self.bent > MOST_BENT {
                 return Err(fail(&format!("up to here bent meshes have more than {MOST_BENT} vertices and triangles")));
             }

@@ -9,7 +9,6 @@
 
 use std::f64::consts::PI;
 
-use etalon_scene::{Channel, Encoding, Image};
 use serde_json::{Value, json};
 
 use super::layers::layer;
@@ -169,15 +168,13 @@ impl Materials<'_> {
     fn mean_alpha(&mut self, value: &Value, place: &str, buffers: &[Vec<u8>], builder: &mut Builder<'_>) -> f64 {
         let Some(info) = value.get("sheenRoughnessTexture") else { return 1.0 };
         let at = format!("{place}.sheenRoughnessTexture");
-        let bytes =
-            self.texture(info, &at, builder).and_then(|texture| super::number::bytes(&texture, buffers, builder));
-        let image = bytes.and_then(|bytes| Image::decode_data(&bytes, Channel::Alpha, Encoding::Linear).ok());
-        let Some(image) = image else {
+        let texture = self.texture(info, &at, builder);
+        let Some((_, alpha)) = texture.and_then(|texture| self.means(&texture, buffers, builder)) else {
             builder.leave_out(at, "it cannot be read: the factor alone says the roughness");
             return 1.0;
         };
         builder.approximate(at, "the mean of its alpha is used");
-        image.mean()[0]
+        alpha
     }
 }
 

@@ -47,8 +47,8 @@ impl Materials<'_> {
         let mut glossiness = factor(&stated["glossinessFactor"]);
         if let Some(info) = stated.get("specularGlossinessTexture") {
             let at = format!("{at}.specularGlossinessTexture");
-            let bytes = self.texture(info, &at, builder).and_then(|texture| bytes(&texture, buffers, builder));
-            match bytes.and_then(|bytes| means(&bytes)) {
+            let texture = self.texture(info, &at, builder);
+            match texture.and_then(|texture| self.means(&texture, buffers, builder)) {
                 Some((mean, alpha)) => {
                     specular = [0, 1, 2].map(|c| specular[c] * mean[c]);
                     glossiness *= alpha;
@@ -95,6 +95,22 @@ impl Materials<'_> {
         }
     }
 
+    /// The mean colour of an image, and the mean of its alpha: 1 if it has none.
+    pub(super) fn means(
+        &mut self,
+        texture: &gltf::Texture<'_>,
+        buffers: &[Vec<u8>],
+        builder: &Builder<'_>,
+    ) -> Option<([f64; 3], f64)> {
+        let index = texture.source()?.index();
+        *self.means.entry(index).or_insert_with(|| {
+            let bytes = bytes(texture, buffers, builder)?;
+            let (colours, _) = Image::decode(&bytes, Encoding::Srgb).ok()?;
+            let alpha = Image::decode_data(&bytes, Channel::Alpha, Encoding::Linear).ok()?;
+            Some((colours.mean(), alpha.mean()[0]))
+        })
+    }
+
     /// The opacity that it states; `None` without the extension.
     pub(super) fn diffuse_alpha(
         &mut self,
@@ -109,11 +125,4 @@ impl Materials<'_> {
         let factor = stated["diffuseFactor"][3].as_f64().unwrap_or(1.0);
         Some(Opacity { factor, image: image.map(|(_, image, set)| (image, set)), place })
     }
-}
-
-/// The mean colour of an image, and the mean of its alpha: 1 if it has none.
-fn means(bytes: &[u8]) -> Option<([f64; 3], f64)> {
-    let (colours, _) = Image::decode(bytes, Encoding::Srgb).ok()?;
-    let alpha = Image::decode_data(bytes, Channel::Alpha, Encoding::Linear).ok()?;
-    Some((colours.mean(), alpha.mean()[0]))
 }

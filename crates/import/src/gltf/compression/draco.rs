@@ -61,7 +61,7 @@ fn write_out(out: &mut Decoded<'_>, [mesh, primitive]: [usize; 2], extension: &V
     Ok(())
 }
 
-/// The mesh of the stream that an extension names, and its size in bytes: that of the stream if it is larger.
+/// The mesh of the stream that an extension names, and what it costs of the budget: the larger of its decoded size and the stream's, bytes.
 fn decoded(out: &Decoded<'_>, extension: &Value) -> Result<(Mesh, usize), String> {
     let view = extension.as_object().and_then(|extension| whole_number(extension, "bufferView"));
     let view =
@@ -121,7 +121,7 @@ fn write(number: f32, kind: ComponentType, bytes: &mut Vec<u8>) {
     }
 }
 
-/// Adds an accessor of these bytes of so many elements.
+/// Adds an accessor of `count` elements whose data are `bytes`.
 fn add(out: &mut Decoded<'_>, mut accessor: Accessor, count: usize, bytes: Vec<u8>) -> Result<Index<Accessor>, String> {
     out.may_become(Some(bytes.len()))?;
     let view = out.add_view(bytes);

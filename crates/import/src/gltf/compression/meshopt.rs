@@ -33,7 +33,7 @@ pub(super) fn undo(out: &mut Decoded<'_>) -> Result<(), String> {
 }
 
 fn decoded(extension: &Value, out: &Decoded<'_>) -> Result<Vec<u8>, String> {
-    let extension = extension.as_object().ok_or("its compression is no object")?;
+    let extension = extension.as_object().ok_or("its compression is not an object")?;
     let number = |key| whole_number(extension, key).ok_or_else(|| format!("its compression lacks a number \"{key}\""));
     let [buffer, length, stride, count] =
         [number("buffer")?, number("byteLength")?, number("byteStride")?, number("count")?];
@@ -65,6 +65,6 @@ fn decoded(extension: &Value, out: &Decoded<'_>) -> Result<Vec<u8>, String> {
 fn extension_text<'a>(extension: &'a Map<String, Value>, key: &str, default: &'a str) -> Result<&'a str, String> {
     match extension.get(key) {
         None => Ok(default),
-        Some(text) => text.as_str().ok_or_else(|| format!("\"{key}\" of its compression is no text")),
+        Some(text) => text.as_str().ok_or_else(|| format!("\"{key}\" of its compression is not a string")),
     }
 }

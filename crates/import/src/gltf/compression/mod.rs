@@ -11,12 +11,14 @@ use gltf::json::validation::USize64;
 use gltf::json::{Index, Root};
 use serde_json::{Map, Value};
 
+use super::accessor::{MOST_WITHOUT_DATA, TOO_MANY_WITHOUT_DATA};
+
 /// The extensions that are undone here.
 pub(super) const UNDONE: [&str; 3] = [draco::NAME, meshopt::NAMES[0], meshopt::NAMES[1]];
 
 /// The most bytes that all compressed parts of a file may become: few bytes can stand for many.
 const MOST_BYTES: usize = 1 << 30;
-const TOO_MUCH: &str = "with all that is compressed it would have more than 1 GiB";
+const TOO_MUCH: &str = "the compressed parts of the file would take more than 1 GiB";
 
 /// Writes out all that is compressed, in `buffers` that follow the file's own.
 pub(super) fn undo(root: &mut Root, buffers: &mut Vec<Vec<u8>>) -> Result<(), String> {
@@ -26,7 +28,7 @@ pub(super) fn undo(root: &mut Root, buffers: &mut Vec<Vec<u8>>) -> Result<(), St
     out.write_zeros()
 }
 
-/// Whether a buffer has no bytes that are needed, as all that views show of it is compressed elsewhere. It may name a file all the same.
+/// Whether a buffer is only a fallback for compressed data and may lack its bytes.
 pub(super) fn is_placeholder(buffer: &Buffer) -> bool {
     let stated = buffer.extensions.as_ref().map(|extensions| &extensions.others);
     stated.is_some_and(|stated| {
@@ -51,15 +53,16 @@ impl Decoded<'_> {
             if accessor.buffer_view.is_some() || accessor.sparse.is_some() {
                 continue;
             }
-            let bytes = usize::try_from(accessor.count.0).ok();
-            let bytes = bytes.and_then(|count| count.checked_mul(component.0.size() * kind.multiplicity()));
-            self.may_become(bytes).map_err(|why| format!("$.accessors[{index}]: {why}"))?;
-            longest = longest.max(bytes.unwrap_or(0));
+            if accessor.count.0 > MOST_WITHOUT_DATA as u64 {
+                return Err(format!("$.accessors[{index}]: {TOO_MANY_WITHOUT_DATA}"));
+            }
+            longest = longest.max(accessor.count.0 as usize * component.0.size() * kind.multiplicity());
             without.push(index);
         }
         if without.is_empty() {
             return Ok(());
         }
+        self.may_become(Some(longest))?;
         let view = self.add_view(vec![0; longest]);
         for index in without {
             let accessor = &mut self.root.accessors[index];
