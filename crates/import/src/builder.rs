@@ -66,6 +66,8 @@ pub(crate) struct Builder<'a> {
     made: HashMap<String, String>,
     /// Images by their file and how its numbers stand: what is known of each, or why there is none.
     images: HashMap<(String, Encoding), Result<KnownImage, String>>,
+    /// Measured materials, by the names of their files.
+    measured: HashMap<String, Value>,
     budget: Budget,
     material_names: FreshNames,
     group_names: FreshNames,
@@ -116,6 +118,7 @@ impl<'a> Builder<'a> {
             known: HashMap::new(),
             made: HashMap::new(),
             images: HashMap::new(),
+            measured: HashMap::new(),
             budget: Budget::default(),
             material_names: FreshNames::default(),
             group_names: FreshNames::default(),

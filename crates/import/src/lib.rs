@@ -290,10 +290,10 @@ fn check_name(kind: &str, bytes: &[u8]) -> Result<(), String> {
     let start = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
     let is_xml = start.starts_with(b"<");
     if kind == "pbrt" && is_xml {
-        return Err("it is XML, as scenes of Mitsuba are, and no scene of pbrt: name it .xml".to_owned());
+        return Err("it is a scene of Mitsuba, not of pbrt: rename it to .xml".to_owned());
     }
     if kind == "xml" && !is_xml && bytes.windows(10).any(|word| word == b"WorldBegin") {
-        return Err("it is a scene of pbrt, and no scene of Mitsuba: name it .pbrt".to_owned());
+        return Err("it is a scene of pbrt, not of Mitsuba: rename it to .pbrt".to_owned());
     }
     Ok(())
 }

@@ -27,9 +27,6 @@ pub(crate) fn import(bytes: &[u8], builder: &mut Builder<'_>) -> Result<(), Stri
     for name in &file.unknown_materials {
         builder.approximate(format!("usemtl {name}"), "no library has this material: it becomes grey");
     }
-    for what in &file.left_out {
-        builder.leave_out("faces", what.clone());
-    }
     for material in &file.materials {
         let value = self::material(material, builder);
         builder.materials.entry(material.name.clone()).or_insert(value);

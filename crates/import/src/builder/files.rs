@@ -4,8 +4,9 @@ use std::io::Cursor;
 use std::path::Path;
 
 use etalon_scene::mesh::{has_area, write_ply};
-use etalon_scene::{Encoding, Image, Mesh, NamedFile};
+use etalon_scene::{Encoding, Image, Mesh, NamedFile, Symmetry, read_measured};
 use image::{ImageBuffer, ImageFormat, Rgb};
+use serde_json::{Value, json};
 
 use super::Builder;
 use crate::extension;
@@ -62,6 +63,21 @@ impl Builder<'_> {
         let file = self.add_file(kind, &extension(Path::new(name)), bytes);
         self.known.insert(name.to_owned(), Some(file.clone()));
         file
+    }
+
+    /// A measured BRDF as a material, without its sides. Its file is read and copied once.
+    pub(crate) fn measured(&mut self, name: &str, place: &str) -> Result<Value, String> {
+        if let Some(known) = self.measured.get(name) {
+            return Ok(known.clone());
+        }
+        let bytes = self.bytes_of(name, place)?;
+        let (brdf, _) = read_measured(&bytes).map_err(|why| format!("{place}: \"{name}\": {why}"))?;
+        let mut material = json!({ "type": "measured", "file": self.copy("measured", name, bytes) });
+        if brdf.symmetry() != Symmetry::Isotropic {
+            material["tangent_rotation_deg"] = json!(0);
+        }
+        self.measured.insert(name.to_owned(), material.clone());
+        Ok(material)
     }
 
     /// Adds the file of an image, once, and gives its name in the scene and the mean of its texels.

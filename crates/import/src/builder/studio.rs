@@ -4,6 +4,7 @@
 //! any size, and a white surface that faces the key light has a luminance of about 0.7: exposure 0 is right.
 
 use etalon_optics::colour::rec709_luminance;
+use etalon_scene::mesh::area_vectors;
 use etalon_scene::{Encoding, Image, Mesh};
 use glam::{DAffine3, DVec3};
 use serde_json::{Value, json};
@@ -70,12 +71,7 @@ pub(super) fn camera(bounds: [[f64; 3]; 2]) -> (Value, f64) {
 
 /// The area of a mesh that is moved.
 pub(super) fn area(mesh: &Mesh, map: &DAffine3) -> f64 {
-    let corner = |i: u32| map.transform_point3(mesh.vertices[i as usize].into());
-    let areas = mesh.triangles.iter().map(|&[a, b, c]| {
-        let a = corner(a);
-        0.5 * (corner(b) - a).cross(corner(c) - a).length()
-    });
-    areas.sum()
+    area_vectors(mesh, &map.matrix3).map(DVec3::length).sum()
 }
 
 impl Builder<'_> {

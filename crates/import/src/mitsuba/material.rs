@@ -13,7 +13,6 @@ use crate::number::{Number, Rough};
 use crate::relief::{has_map, without_map};
 use crate::sides::change_sides;
 use crate::table::{Table, metal};
-use etalon_scene::{Symmetry, read_measured};
 
 /// What a surface is made of.
 #[derive(Clone, Debug)]
@@ -251,17 +250,7 @@ impl Walk<'_, '_, '_> {
     fn measured(&mut self, element: &Element) -> Result<Value, String> {
         let place = &element.place;
         let name = element.string("filename").ok_or_else(|| format!("{place}: it has no \"filename\""))?;
-        if let Some(known) = self.measured.get(name) {
-            return Ok(known.clone());
-        }
-        let bytes = self.builder.bytes_of(name, place)?;
-        let (brdf, _) = read_measured(&bytes).map_err(|why| format!("{place}: \"{name}\": {why}"))?;
-        let mut material = json!({ "type": "measured", "file": self.builder.copy("measured", name, bytes) });
-        if brdf.symmetry() != Symmetry::Isotropic {
-            material["tangent_rotation_deg"] = json!(0);
-        }
-        self.measured.insert(name.to_owned(), material.clone());
-        Ok(material)
+        self.builder.measured(name, place)
     }
 
     fn conductor(&mut self, element: &Element, rough: bool) -> Result<Value, String> {

@@ -49,7 +49,6 @@ pub(super) fn import(bytes: &[u8], parameters: &[(String, String)], builder: &mu
         looks: HashMap::new(),
         named_looks: HashMap::new(),
         meshes: HashMap::new(),
-        measured: HashMap::new(),
         choices: Choices::default(),
         ignores_media: None,
         interiors: HashMap::new(),
@@ -72,8 +71,6 @@ struct Walk<'a, 'w, 'b> {
     named_looks: HashMap<*const Element, Look>,
     /// Mesh files that have been read, by what was asked of them.
     meshes: HashMap<String, std::rc::Rc<shape::Mesh>>,
-    /// Measured materials, by the names of their files.
-    measured: HashMap<String, serde_json::Value>,
     /// What has been chosen of the material that is being read.
     choices: Choices,
     /// The integrator, if it goes through media as if they were not there.

@@ -1,15 +1,15 @@
 //! Mitsuba's `serialized` meshes: several in a file, each compressed by zlib, with a list of their places at the end.
 
+use std::io::Read;
+
 use etalon_scene::Mesh;
 use etalon_scene::mesh::{MAX_ELEMENTS, Part};
-use miniz_oxide::inflate::decompress_to_vec_zlib_with_limit;
+use flate2::bufread::ZlibDecoder;
 
 /// The first number of every mesh.
 const MAGIC: u16 = 0x041c;
 /// Most bytes that one mesh may have when it is not compressed.
 const MOST_BYTES: usize = 1 << 31;
-/// Most that a compressed byte stands for, by the deflate format, and a little more.
-const MOST_RATIO: usize = 1100;
 
 const NORMALS: u32 = 0x1;
 const UVS: u32 = 0x2;
@@ -39,9 +39,12 @@ pub(super) fn read(file: &[u8], index: usize) -> Result<(Part, bool), String> {
     word[..size].copy_from_slice(places.get(at..at + size).ok_or("its list of meshes is cut off")?);
     let begin = usize::try_from(u64::from_le_bytes(word)).map_err(|_| "a mesh lies beyond its end")?;
     let compressed = begin.checked_add(4).and_then(|begin| file.get(begin..)).ok_or("a mesh lies beyond its end")?;
-    let most = compressed.len().saturating_mul(MOST_RATIO).min(MOST_BYTES);
-    let bytes = decompress_to_vec_zlib_with_limit(compressed, most)
-        .map_err(|error| format!("its mesh {index} cannot be decompressed: {error}"))?;
+    let mut bytes = Vec::new();
+    let inflated = ZlibDecoder::new(compressed).take(MOST_BYTES as u64 + 1).read_to_end(&mut bytes);
+    inflated.map_err(|error| format!("its mesh {index} cannot be decompressed: {error}"))?;
+    if bytes.len() > MOST_BYTES {
+        return Err(format!("its mesh {index} has more than {MOST_BYTES} bytes"));
+    }
     mesh(&bytes, version).map_err(|why| format!("mesh {index}: {why}"))
 }
 
@@ -125,7 +128,8 @@ impl Rest<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use miniz_oxide::deflate::compress_to_vec_zlib;
+    use flate2::Compression;
+    use flate2::bufread::ZlibEncoder;
 
     /// A triangle with texture coordinates whose third vertex lies at `z`.
     fn triangle(version: u16, z: f64, corners: [u32; 3]) -> Vec<u8> {
@@ -139,7 +143,9 @@ mod tests {
         bytes.extend(positions.iter().chain(&uvs).flat_map(|v| v.to_le_bytes()));
         bytes.extend(corners.iter().flat_map(|corner| corner.to_le_bytes()));
         let head = [MAGIC, version].into_iter().flat_map(u16::to_le_bytes);
-        head.chain(compress_to_vec_zlib(&bytes, 6)).collect()
+        let mut file: Vec<u8> = head.collect();
+        ZlibEncoder::new(bytes.as_slice(), Compression::default()).read_to_end(&mut file).expect("memory can be read");
+        file
     }
 
     fn file(version: u16, meshes: &[Vec<u8>]) -> Vec<u8> {

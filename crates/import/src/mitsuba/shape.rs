@@ -289,7 +289,11 @@ impl<'a> Walk<'a, '_, '_> {
         let (parts, of_faces) = match format {
             // Materials of MTL are not asked for: the scene has its own.
             MeshFormat::Obj => {
-                (read_obj(&bytes, Cut::Fans, |_| Ok(Vec::new())).map_err(|error| refused(&error))?.parts, false)
+                let file = read_obj(&bytes, Cut::Fans, |_| Ok(Vec::new())).map_err(|error| refused(&error))?;
+                let mut parts = file.parts;
+                // Mitsuba reads colours of vertices from ply and serialized meshes only.
+                parts.iter_mut().for_each(|part| part.mesh.colours.clear());
+                (parts, false)
             }
             MeshFormat::Ply => (vec![read_ply(&bytes).map_err(|error| refused(&error))?], false),
             MeshFormat::Serialized(index) => {

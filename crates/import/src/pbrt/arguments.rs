@@ -1,4 +1,4 @@
-//! What follows the directives of a file.
+//! Reads the arguments of a directive.
 
 use glam::DAffine3;
 

@@ -22,7 +22,7 @@ const MOST_REMEMBERED: usize = 10_000;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Attributes(Rc<Vec<(usize, Rc<Parameter>)>>);
 
-/// What has become of parameters by attributes.
+/// Which parameters given by `Attribute` were used, and how many values they handed on.
 #[derive(Debug, Default)]
 pub(super) struct Inheritance {
     /// How many values directives have by them.

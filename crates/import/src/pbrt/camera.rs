@@ -34,7 +34,7 @@ impl Reading<'_, '_> {
         match kind {
             "perspective" => {
                 camera["type"] = json!("perspective");
-                let fov = list.number("fov")?.unwrap_or(90.0);
+                let fov = list.number_or("fov", 90.0)?;
                 // The angle is that of the shorter side.
                 camera[if aspect >= 1.0 { "vertical_fov_deg" } else { "horizontal_fov_deg" }] = json!(fov);
             }
@@ -48,14 +48,14 @@ impl Reading<'_, '_> {
                 return Ok(());
             }
         }
-        let radius = list.number("lensradius")?.unwrap_or(0.0);
+        let radius = list.number_or("lensradius", 0.0)?;
         let focus = list.number("focaldistance")?;
         if radius > 0.0 && kind == "perspective" {
             let along = from_camera.matrix3.z_axis.length();
             let focus = focus.unwrap_or(1e6) * along;
             camera["lens"] = json!({ "radius_m": radius * along, "focus_distance_m": focus });
         }
-        let open_s = list.number("shutterclose")?.unwrap_or(1.0) - list.number("shutteropen")?.unwrap_or(0.0);
+        let open_s = list.number_or("shutterclose", 1.0)? - list.number_or("shutteropen", 0.0)?;
         self.list_exposure(open_s, place);
         list.list_unused(self.builder);
         self.builder.camera = Some(camera);
@@ -64,7 +64,7 @@ impl Reading<'_, '_> {
 
     /// The film comes before the camera in files that people write; the camera's angle is along its shorter side.
     pub(super) fn film(&mut self, kind: &str, list: &Parameters, place: &str) -> Result<(), String> {
-        let size = |name: &str, default: f64| Ok::<f64, String>(list.number(name)?.unwrap_or(default).max(1.0).round());
+        let size = |name: &str, default: f64| Ok::<f64, String>(list.number_or(name, default)?.max(1.0).round());
         let (width, height) = (size("xresolution", 1280.0)?, size("yresolution", 720.0)?);
         self.builder.film["width"] = json!(width as u64);
         self.builder.film["height"] = json!(height as u64);
@@ -88,10 +88,9 @@ impl Reading<'_, '_> {
                 format!("the sensor \"{sensor}\" is left out: colours are those that the CIE 1931 observer sees");
             self.builder.leave_out(place, what);
         }
-        let number = |key: &str, default: f64| Ok::<f64, String>(list.number(key)?.unwrap_or(default));
-        self.list_exposure(number("iso", 100.0)? / 100.0 * number("exposuretime", 1.0)?, place);
-        if let Some(most) = list.number("maxcomponentvalue")? {
-            self.builder.leave_out(place, format!("samples above \"maxcomponentvalue\" {most} keep their brightness"));
+        self.list_exposure(list.number_or("iso", 100.0)? / 100.0 * list.number_or("exposuretime", 1.0)?, place);
+        if list.number("maxcomponentvalue")?.is_some() {
+            self.builder.leave_out(place, "\"maxcomponentvalue\" is ignored: bright samples are not clamped");
         }
         if !matches!(kind, "rgb" | "gbuffer") {
             self.builder.approximate(place, format!("the film \"{kind}\" becomes a picture of colours"));
@@ -132,7 +131,7 @@ impl Reading<'_, '_> {
             self.builder.approximate(place, format!("the integrator \"{kind}\" becomes a path tracer"));
         }
         // A depth of 0 is light seen directly, which is one edge of a path. What is more than a scene can say stands for no limit.
-        let depth = (list.number("maxdepth")?.unwrap_or(5.0).max(0.0) + 1.0).min(f64::from(u32::MAX)) as u32;
+        let depth = (list.number_or("maxdepth", 5.0)?.max(0.0) + 1.0).min(f64::from(u32::MAX)) as u32;
         self.builder.integrator.insert("max_depth".to_owned(), json!(depth));
         for harmless in ["lightsampler", "regularize"] {
             if list.flag(harmless) != Some(true) {
@@ -146,11 +145,11 @@ impl Reading<'_, '_> {
     pub(super) fn filter(&mut self, kind: &str, list: &Parameters, place: &str) -> Result<(), String> {
         self.builder.film["filter"] = match kind {
             "box" => json!({ "type": "box" }),
-            "triangle" => json!({ "type": "tent", "radius_px": list.number("xradius")?.unwrap_or(2.0) }),
-            "gaussian" => json!({ "type": "gaussian", "sigma_px": list.number("sigma")?.unwrap_or(0.5) }),
+            "triangle" => json!({ "type": "tent", "radius_px": list.number_or("xradius", 2.0)? }),
+            "gaussian" => json!({ "type": "gaussian", "sigma_px": list.number_or("sigma", 0.5)? }),
             "mitchell" => {
-                let [b, c] = [list.number("B")?, list.number("C")?].map(|number| number.unwrap_or(1.0 / 3.0));
-                let radius = list.number("xradius")?.unwrap_or(2.0);
+                let [b, c] = [list.number_or("B", 1.0 / 3.0)?, list.number_or("C", 1.0 / 3.0)?];
+                let radius = list.number_or("xradius", 2.0)?;
                 if [b, c].iter().all(|number| (0.0..=1.0).contains(number)) {
                     json!({ "type": "mitchell", "radius_px": radius, "b": b, "c": c })
                 } else {

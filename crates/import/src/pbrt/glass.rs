@@ -56,9 +56,9 @@ pub(super) fn glass(name: &str) -> Option<Value> {
     Some(json!({ "type": "sellmeier", "b": b, "c_um2": c, "range_nm": range_nm, "outside_fit": "clamp" }))
 }
 
-/// A metal of the format by its name in pbrt, and what to say if another stands for it.
+/// A metal of the format by its name in pbrt without `-eta` or `-k`, and what to say if another stands for it.
 pub(super) fn named_metal(name: &str) -> (Value, Option<String>) {
-    let symbol = name.strip_prefix("metal-").and_then(|name| name.strip_suffix("-eta"));
+    let symbol = name.strip_prefix("metal-");
     match symbol {
         Some("CuZn") => {
             let copper = metals::named("Cu").unwrap_or_else(aluminium);
@@ -103,9 +103,9 @@ mod tests {
 
     #[test]
     fn what_stands_for_a_metal_is_said() {
-        assert_eq!(named_metal("metal-Au-eta").1, None);
-        assert_eq!(named_metal("metal-MgO-eta").1, None);
-        assert!(named_metal("metal-CuZn-eta").1.unwrap().contains("becomes copper"));
-        assert!(named_metal("metal-Xx-eta").1.unwrap().contains("becomes aluminium"));
+        assert_eq!(named_metal("metal-Au").1, None);
+        assert_eq!(named_metal("metal-MgO").1, None);
+        assert!(named_metal("metal-CuZn").1.unwrap().contains("becomes copper"));
+        assert!(named_metal("metal-Xx").1.unwrap().contains("becomes aluminium"));
     }
 }

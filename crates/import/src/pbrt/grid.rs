@@ -27,7 +27,7 @@ struct Lattice {
 impl Lattice {
     fn read(list: &Parameters, place: &str) -> Result<Self, String> {
         let count = |key: &str| -> Result<usize, String> {
-            let count = list.number(key)?.unwrap_or(1.0);
+            let count = list.number_or(key, 1.0)?;
             match count {
                 1.0..=4096.0 => Ok(count as usize),
                 _ => Err(format!("{place}: \"{key}\" is {count}: 1 to 4096 cells are read")),

@@ -14,7 +14,7 @@ use super::power::{Lamp, cone, of_illuminance, of_power};
 
 impl Reading<'_, '_> {
     pub(super) fn light(&mut self, kind: &str, list: &Parameters, place: &str) -> Result<(), String> {
-        let scale = list.number("scale")?.unwrap_or(1.0).max(0.0);
+        let scale = list.number_or("scale", 1.0)?.max(0.0);
         let map = self.to_world();
         let from = DVec3::from(list.triple("from")?.unwrap_or([0.0; 3]));
         let to = DVec3::from(list.triple("to")?.unwrap_or([0.0, 0.0, 1.0]));
@@ -29,8 +29,8 @@ impl Reading<'_, '_> {
                 json!({ "type": "point", "position_m": position, "intensity": intensity })
             }
             "spot" => {
-                let outer = list.number("coneangle")?.unwrap_or(30.0);
-                let inner = outer - list.number("conedeltaangle")?.unwrap_or(5.0);
+                let outer = list.number_or("coneangle", 30.0)?;
+                let inner = outer - list.number_or("conedeltaangle", 5.0)?;
                 let factor = of_power(list, cone(outer, inner))?;
                 let intensity = self.emitted(list, "I", scale * factor)?;
                 json!({
@@ -98,7 +98,7 @@ impl Reading<'_, '_> {
             self.builder.leave_out(place, format!("the light \"{kind}\" is not known, and is left out"));
             return Ok(None);
         }
-        let scale = list.number("scale")?.unwrap_or(1.0).max(0.0);
+        let scale = list.number_or("scale", 1.0)?.max(0.0);
         let mut luminance = 1.0;
         let radiance = match list.string("filename").map(str::to_owned) {
             None => self.emitted(list, "L", scale)?,

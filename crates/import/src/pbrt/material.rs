@@ -1,16 +1,18 @@
 //! Materials of pbrt.
 
-use etalon_scene::{Symmetry, read_measured};
 use serde_json::{Map, Value, json};
 
 use super::glass::{glass, named_metal};
-use super::parameters::Parameters;
+use super::parameters::{Parameter, Parameters};
 use super::{Look, Reading};
 use crate::budget::BlendSize;
 use crate::number::{Number, Rough};
 use crate::relief::has_map;
 use crate::table::{Table, metal};
 use crate::translucent::{scaled, translucent};
+
+/// The metal where a conductor states none.
+const COPPER: &str = "metal-Cu";
 
 impl Reading<'_, '_> {
     pub(super) fn material(&mut self, kind: &str, list: &Parameters, place: &str) -> Result<Look, String> {
@@ -102,22 +104,14 @@ impl Reading<'_, '_> {
     /// A measured BRDF, whose file is copied. It reflects on both sides.
     fn measured(&mut self, list: &Parameters, place: &str) -> Result<Value, String> {
         let name = list.string("filename").ok_or_else(|| format!("{place}: it has no \"filename\""))?;
-        let bytes = self.builder.bytes_of(name, place)?;
-        let (brdf, _) = read_measured(&bytes).map_err(|why| format!("{place}: \"{name}\": {why}"))?;
-        let file = self.builder.copy("measured", name, bytes);
-        let mut material = json!({ "type": "measured", "file": file, "sides": "both" });
-        if brdf.symmetry() != Symmetry::Isotropic {
-            material["tangent_rotation_deg"] = json!(0);
-        }
+        let mut material = self.builder.measured(name, place)?;
+        material["sides"] = json!("both");
         Ok(material)
     }
 
     /// A metal, whose parameters have a prefix if it is below a coat.
     fn conductor(&mut self, list: &Parameters, prefix: &str, place: &str) -> Result<Value, String> {
         let rough = self.rough(list, prefix, place)?;
-        let named = |what: &str| list.string(&format!("{prefix}{what}")).map(str::to_owned);
-        let eta = named("eta");
-        named("k");
         // The reflectance of what is coated has no prefix there.
         let stated = match self.reflectance(list, "reflectance", true)? {
             None if !prefix.is_empty() => self.reflectance(list, &format!("{prefix}reflectance"), true)?,
@@ -126,14 +120,8 @@ impl Reading<'_, '_> {
         let mut value = if let Some(reflectance) = stated {
             // The same index as in pbrt: 1 + ik.
             json!({ "type": "conductor", "reflectance": reflectance })
-        } else if let Some((eta, k)) = self.own_indices(list, prefix)? {
-            metal(&eta, &k)
         } else {
-            let (known, other) = named_metal(eta.as_deref().unwrap_or("metal-Cu-eta"));
-            if let Some(what) = other {
-                self.builder.approximate(place, what);
-            }
-            known
+            self.metal(list, prefix, place)?
         };
         rough.put(&mut value);
         value["outside_fit"] = json!("clamp");
@@ -141,26 +129,37 @@ impl Reading<'_, '_> {
         Ok(value)
     }
 
-    /// Both tables of a metal that is not named.
-    fn own_indices(&mut self, list: &Parameters, prefix: &str) -> Result<Option<(Table, Table)>, String> {
-        let mut tables = Vec::new();
-        for what in ["eta", "k"] {
-            let Some(parameter) = list.get(&format!("{prefix}{what}")) else { continue };
-            let table = match (parameter.kind.as_str(), parameter.numbers()) {
-                ("rgb" | "color", [r, g, b]) => {
-                    let what = "a colour as eta or k becomes a smooth spectrum of that colour";
-                    self.builder.approximate(&parameter.place, what);
-                    Table::of_colour(&json!({ "rgb": [r, g, b] }))
-                }
-                (_, [value]) => Some(Table(vec![(550.0, *value)])),
-                _ => self.table(parameter)?,
-            };
-            tables.extend(table);
+    /// A metal by its eta and k: two tables, or the name of a metal. What is not stated is copper's.
+    fn metal(&mut self, list: &Parameters, prefix: &str, place: &str) -> Result<Value, String> {
+        let [eta, k] = ["eta", "k"].map(|what| list.get(&format!("{prefix}{what}")));
+        let (of_eta, of_k) = (eta.map(|eta| metal_name(eta, "-eta")), k.map(|k| metal_name(k, "-k")));
+        if let (Some(eta), Some(k), Some(None), Some(None)) = (eta, k, of_eta, of_k) {
+            return Ok(metal(&self.index_of_metal(eta)?, &self.index_of_metal(k)?));
         }
-        Ok(match (tables.pop(), tables.pop()) {
-            (Some(k), Some(eta)) => Some((eta, k)),
-            _ => None,
-        })
+        let name = of_eta.flatten().or(of_k.flatten()).unwrap_or(COPPER);
+        if [of_eta, of_k].iter().any(|of| of.unwrap_or(Some(COPPER)) != Some(name)) {
+            let what = format!("eta and k are of two kinds: the metal \"{name}\" is used for both");
+            self.builder.approximate(place, what);
+        }
+        let (known, other) = named_metal(name);
+        if let Some(what) = other {
+            self.builder.approximate(place, what);
+        }
+        Ok(known)
+    }
+
+    /// A table of eta or k, which are not named.
+    fn index_of_metal(&mut self, parameter: &Parameter) -> Result<Table, String> {
+        let table = match (parameter.kind.as_str(), parameter.numbers()) {
+            ("rgb" | "color", [r, g, b]) => {
+                let what = "a colour as eta or k becomes a smooth spectrum of that colour";
+                self.builder.approximate(&parameter.place, what);
+                Table::of_colour(&json!({ "rgb": [r, g, b] }))
+            }
+            (_, [value]) => Some(Table(vec![(550.0, *value)])),
+            _ => self.table(parameter)?,
+        };
+        table.ok_or_else(|| format!("{}: it is not an index of refraction", parameter.place))
     }
 
     /// An index of refraction: a number, or a glass by its name.
@@ -195,4 +194,10 @@ impl Reading<'_, '_> {
             }
         })
     }
+}
+
+/// The metal of which eta or k is the index, by its name without this ending; `None` of numbers and of files.
+fn metal_name<'p>(parameter: &'p Parameter, ending: &str) -> Option<&'p str> {
+    let name = parameter.strings().first().filter(|name| !name.ends_with(".spd"))?;
+    Some(name.strip_suffix(ending).unwrap_or(name))
 }

@@ -12,8 +12,8 @@ use crate::coefficient;
 impl Reading<'_, '_> {
     pub(super) fn named_medium(&mut self, name: String, list: &Parameters, place: &str) -> Result<(), String> {
         let kind = list.string("type").unwrap_or("homogeneous").to_owned();
-        let scale = list.number("scale")?.unwrap_or(1.0);
-        let g = list.number("g")?.unwrap_or(0.0);
+        let scale = list.number_or("scale", 1.0)?;
+        let g = list.number_or("g", 0.0)?;
         let mut medium = match kind.as_str() {
             "homogeneous" => {
                 let mut medium = match self.preset(list, scale, place) {
@@ -22,7 +22,7 @@ impl Reading<'_, '_> {
                 };
                 if list.get("Le").is_some() {
                     // There, too, a medium emits this times its absorption.
-                    let factor = list.number("Lescale")?.unwrap_or(1.0);
+                    let factor = list.number_or("Lescale", 1.0)?;
                     medium["source_radiance"] = self.emitted(list, "Le", factor)?;
                 }
                 medium
@@ -57,10 +57,11 @@ impl Reading<'_, '_> {
 
     /// What a grid emits, if that is the same in all of its cells.
     fn light_of_grid(&mut self, list: &Parameters, medium: &mut Value, place: &str) -> Result<(), String> {
-        for of_fire in ["temperature", "temperatureoffset", "temperaturescale"] {
-            if list.get(of_fire).is_some() && of_fire == "temperature" {
-                self.builder.leave_out(place, "\"temperature\" is left out: the medium does not glow");
-            }
+        if list.get("temperature").is_some() {
+            self.builder.leave_out(place, "\"temperature\" is left out: the medium does not glow");
+        }
+        for of_temperature in ["temperatureoffset", "temperaturescale"] {
+            list.get(of_temperature);
         }
         if list.get("Le").is_none() {
             list.get("Lescale");
@@ -72,12 +73,8 @@ impl Reading<'_, '_> {
             return Ok(());
         };
         let what = match scales.len() {
-            1 => {
-                "\"Le\" is the same in all of its box: there it falls from the middle to half at the middle of each face"
-            }
-            _ => {
-                "\"Le\" is the same in all of its box: there it falls to half over the outer half of the outermost cells"
-            }
+            1 => "\"Le\" is constant in its box; in pbrt it falls from the middle to half at each face",
+            _ => "\"Le\" is constant in its box; in pbrt it falls to half over the outer half of the outermost cells",
         };
         self.builder.approximate(place, what);
         medium["source_radiance"] = self.emitted(list, "Le", *factor)?;

@@ -36,9 +36,8 @@ impl Reading<'_, '_> {
 
     /// The texture `mix`: of two colours by a number or a chequerboard, or of chequerboards that lie alike.
     pub(super) fn mixed(&mut self, list: &Parameters, place: &str) -> Result<Value, String> {
-        let mut part = |name: &str, default: f64| {
-            Ok::<Value, String>(self.reflectance(list, name, true)?.unwrap_or(json!(default)))
-        };
+        let mut part =
+            |name: &str, default: f64| Ok::<Value, String>(self.value(list, name, true)?.unwrap_or(json!(default)));
         let [first, second, amount] = [part("tex1", 0.0)?, part("tex2", 1.0)?, part("amount", 0.5)?];
         let boards = [&first, &second, &amount].map(board);
         let map = boards.iter().flatten().next().map(|board| board.uv_map);

@@ -34,14 +34,12 @@ use arguments::Arguments;
 use attributes::{Attributes, Inheritance};
 use gzip::MOST_INFLATED;
 use power::{Faces, Lamp, MOST_MEASURED};
-use tokens::{Word, tokens};
+use tokens::{MOST_WORDS, Token, Word, tokens};
 
 /// Deepest nesting of files that include files, and of attributes.
 const MAX_DEPTH: usize = 64;
 /// Most files that are included, each counted as often as it is.
 const MAX_INCLUDES: usize = 1000;
-/// Most bytes of included files that are read at a time, one within the other: their words take more memory than their text.
-const MOST_OPEN: usize = 1 << 28;
 
 pub(super) fn import(bytes: &[u8], builder: &mut Builder<'_>) -> Result<(), String> {
     let mut reading = Reading {
@@ -57,18 +55,20 @@ pub(super) fn import(bytes: &[u8], builder: &mut Builder<'_>) -> Result<(), Stri
         media: HashMap::new(),
         meshes: HashMap::new(),
         faces: HashMap::new(),
+        upper_halves: HashMap::new(),
         object: None,
         inheritance: Inheritance::default(),
         measured_left: MOST_MEASURED,
         inflated_left: MOST_INFLATED,
-        open: 0,
+        words_left: MOST_WORDS,
         includes: 0,
         shapes: 0,
     };
     // Where the file says nothing.
     reading.builder.film = serde_json::json!({ "width": 1280, "height": 720, "filter": { "type": "gaussian" } });
     reading.builder.integrator.insert("max_depth".to_owned(), serde_json::json!(6));
-    reading.file(bytes, "", 0)?;
+    let (words, _) = reading.words(bytes, "")?;
+    reading.file(&words, "", 0)?;
     if let Some((name, ..)) = &reading.object {
         return Err(format!("the object \"{name}\" is not ended"));
     }
@@ -144,6 +144,8 @@ struct Reading<'r, 'b> {
     meshes: HashMap<String, (shape::Placeable, usize)>,
     /// The areas of those that are lamps of a stated power.
     faces: HashMap<String, Rc<Faces>>,
+    /// The illuminance by the upper half of each sky whose illuminance is stated, by its file.
+    upper_halves: HashMap<String, f64>,
     /// The object that is being defined, and what is outside of it.
     object: Option<(String, Outside)>,
     inheritance: Inheritance,
@@ -151,19 +153,25 @@ struct Reading<'r, 'b> {
     measured_left: usize,
     /// How many more bytes compressed files may have.
     inflated_left: usize,
-    /// Bytes of the included files that are being read.
-    open: usize,
+    /// How many more words the files may have that are being read, one within the other.
+    words_left: usize,
     includes: usize,
     shapes: usize,
 }
 
 impl Reading<'_, '_> {
-    fn file(&mut self, bytes: &[u8], of: &str, depth: usize) -> Result<(), String> {
+    /// The words of a file, and how many they count for.
+    fn words(&mut self, bytes: &[u8], of: &str) -> Result<(Vec<Token>, usize), String> {
+        let text = std::str::from_utf8(bytes).map_err(|_| format!("{of}it is not UTF-8"))?;
+        let (words, count) = tokens(text, self.words_left).map_err(|why| format!("{of}{why}"))?;
+        self.words_left -= count;
+        Ok((words, count))
+    }
+
+    fn file(&mut self, tokens: &[Token], of: &str, depth: usize) -> Result<(), String> {
         if depth > MAX_DEPTH {
             return Err(format!("{of}files are included more than {MAX_DEPTH} deep"));
         }
-        let text = std::str::from_utf8(bytes).map_err(|_| format!("{of}it is not UTF-8"))?;
-        let tokens = tokens(text).map_err(|why| format!("{of}{why}"))?;
         let mut at = 0;
         while let Some(token) = tokens.get(at) {
             let place = format!("{of}line {}", token.line);
@@ -171,7 +179,7 @@ impl Reading<'_, '_> {
                 return Err(format!("{place}: a directive should stand here"));
             };
             at += 1;
-            let mut arguments = Arguments { tokens: &tokens, at: &mut at, of, place: &place };
+            let mut arguments = Arguments { tokens, at: &mut at, of, place: &place };
             if matches!(directive.as_str(), "Include" | "Import") {
                 let name = arguments.quoted()?;
                 self.includes += 1;
@@ -179,12 +187,11 @@ impl Reading<'_, '_> {
                     return Err(format!("{place}: more than {MAX_INCLUDES} files are included"));
                 }
                 let bytes = self.inflated(&name, &place)?;
-                self.open += bytes.len();
-                if self.open > MOST_OPEN {
-                    return Err(format!("{place}: \"{name}\": included files have more than {MOST_OPEN} bytes"));
-                }
-                self.file(&bytes, &format!("{name}, "), depth + 1)?;
-                self.open -= bytes.len();
+                let of = format!("{name}, ");
+                let (words, count) = self.words(&bytes, &of)?;
+                drop(bytes);
+                self.file(&words, &of, depth + 1)?;
+                self.words_left += count;
             } else {
                 self.directive(directive, &mut arguments)?;
             }

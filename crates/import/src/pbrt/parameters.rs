@@ -117,6 +117,11 @@ impl Parameters {
         }
     }
 
+    /// A single number, or one that holds where none is stated.
+    pub(super) fn number_or(&self, name: &str, default: f64) -> Result<f64, String> {
+        Ok(self.number(name)?.unwrap_or(default))
+    }
+
     pub(super) fn triple(&self, name: &str) -> Result<Option<[f64; 3]>, String> {
         match self.get(name) {
             None => Ok(None),

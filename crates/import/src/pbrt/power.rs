@@ -1,12 +1,12 @@
-//! What lights of pbrt give where their power or the illuminance by them is stated: factors on their spectra, which have a luminance of 1.
+//! Factors that give lights of pbrt their stated power or illuminance. The spectra themselves have a luminance of 1.
 
 use std::f64::consts::PI;
 use std::rc::Rc;
 
 use etalon_optics::colour::rec709_luminance;
-use etalon_scene::mesh::read_ply;
+use etalon_scene::mesh::{area_vectors, read_ply};
 use etalon_scene::{Encoding, Image, Mesh};
-use glam::{DAffine3, DMat3, DVec3};
+use glam::{DMat3, DVec3};
 use serde_json::{Value, json};
 
 use super::Reading;
@@ -19,7 +19,7 @@ pub(super) const MOST_MEASURED: usize = 1 << 31;
 #[derive(Clone, Debug)]
 pub(super) struct Lamp {
     pub emission: Value,
-    /// The power of each of pbrt's shapes by the radiance that an area of 1 has, if it is stated.
+    /// Radiance × area of each pbrt shape, if its power is stated.
     pub power: Option<f64>,
 }
 
@@ -40,7 +40,7 @@ impl Areas {
     }
 }
 
-/// The faces of a mesh file.
+/// The faces of a mesh.
 #[derive(Debug)]
 pub(super) struct Faces {
     /// Of each triangle its normal times its area.
@@ -51,11 +51,7 @@ pub(super) struct Faces {
 
 impl Faces {
     fn of(mesh: &Mesh, count: usize) -> Self {
-        let triangles = mesh.triangles.iter().map(|corners| {
-            let [a, b, c] = corners.map(|i| DVec3::from(mesh.vertices[i as usize]));
-            0.5 * (b - a).cross(c - a)
-        });
-        Self { triangles: triangles.collect(), count }
+        Self { triangles: area_vectors(mesh, &DMat3::IDENTITY).collect(), count }
     }
 
     /// Their areas after a map.
@@ -77,7 +73,7 @@ fn positive(list: &Parameters, name: &str) -> Result<Option<f64>, String> {
     Ok(list.number(name)?.filter(|number| *number > 0.0))
 }
 
-/// The factor on the intensity of a light that sends it into a solid angle, perhaps through an edge that counts half.
+/// The factor on an intensity so that the light has its stated power. `solid_angle`, sr: where it shines; a soft edge counts half.
 pub(super) fn of_power(list: &Parameters, solid_angle: f64) -> Result<f64, String> {
     Ok(positive(list, "power")?.map_or(1.0, |power| power / solid_angle))
 }
@@ -88,13 +84,13 @@ pub(super) fn cone(outer_deg: f64, inner_deg: f64) -> f64 {
     2.0 * PI * ((1.0 - inner) + 0.5 * (inner - outer))
 }
 
-/// The factor on a light by whose radiance or irradiance of 1 a surface is lit by `of_one`.
+/// The factor on a light so that it gives its stated illuminance; `of_one` is what radiance or irradiance 1 gives.
 pub(super) fn of_illuminance(list: &Parameters, of_one: f64) -> Result<f64, String> {
     Ok(positive(list, "illuminance")?.map_or(1.0, |illuminance| illuminance / of_one))
 }
 
-/// The illuminance by the upper half of a square image of equal areas as pbrt has it: half of what it is, since it counts half of the solid
-/// angle of each texel.
+/// Illuminance by the upper half of an equal-area sky as pbrt computes it. pbrt counts half of each texel's solid angle, so this is half of
+/// the true value.
 fn of_upper_half(image: &Image) -> f64 {
     let (width, height) = (f64::from(image.width), f64::from(image.height));
     let mut sum = 0.0;
@@ -120,19 +116,20 @@ fn brighten(light: &mut Value, factor: f64) {
     }
 }
 
-/// The area of a triangle of a mesh that is moved.
-fn area(mesh: &Mesh, [a, b, c]: [u32; 3], map: &DAffine3) -> f64 {
-    let [a, b, c] = [a, b, c].map(|i| map.transform_point3(DVec3::from(mesh.vertices[i as usize])));
-    0.5 * (b - a).cross(c - a).length()
-}
-
 impl Reading<'_, '_> {
     /// The factor on the image of a sky, in the scene's file.
     pub(super) fn illuminance_of_sky(&mut self, list: &Parameters, file: &str, place: &str) -> Result<f64, String> {
         let Some(stated) = positive(list, "illuminance")? else { return Ok(1.0) };
-        let bytes = self.builder.files.iter().find(|known| known.name == file).map(|known| &known.bytes);
-        let image = bytes.and_then(|bytes| Image::decode(bytes, Encoding::Auto).ok());
-        let of_one = image.map_or(0.0, |(image, _)| of_upper_half(&image));
+        let of_one = match self.upper_halves.get(file) {
+            Some(known) => *known,
+            None => {
+                let bytes = self.builder.files.iter().find(|known| known.name == file).map(|known| &known.bytes);
+                let image = bytes.and_then(|bytes| Image::decode(bytes, Encoding::Auto).ok());
+                let of_one = image.map_or(0.0, |(image, _)| of_upper_half(&image));
+                self.upper_halves.insert(file.to_owned(), of_one);
+                of_one
+            }
+        };
         if of_one > 0.0 {
             return Ok(stated / of_one);
         }
@@ -165,7 +162,7 @@ impl Reading<'_, '_> {
             return Ok(Some(emission));
         }
         if !alike {
-            let what = "\"power\" is that of each triangle or patch there: all have their mean radiance";
+            let what = "in pbrt each triangle or patch has the whole \"power\"; here all get the mean radiance";
             self.builder.approximate(place, what);
         }
         brighten(&mut emission["radiance"], power * count as f64 / total);
@@ -180,14 +177,15 @@ impl Reading<'_, '_> {
         mesh: Option<&Mesh>,
         place: &str,
     ) -> Result<Option<Areas>, String> {
-        let number = |key: &str, default: f64| Ok::<f64, String>(list.number(key)?.unwrap_or(default));
         let round = |area: f64| Some(Areas::of(&[area]));
         let map = self.to_world();
-        let radius = number("radius", 1.0)?;
+        let radius = list.number_or("radius", 1.0)?;
         Ok(match (shape, mesh) {
             ("sphere", _) => round(4.0 * PI * radius * radius),
             ("disk", _) => round(PI * radius * radius),
-            ("cylinder", _) => round(2.0 * PI * radius * (number("zmax", 1.0)? - number("zmin", -1.0)?).abs()),
+            ("cylinder", _) => {
+                round(2.0 * PI * radius * (list.number_or("zmax", 1.0)? - list.number_or("zmin", -1.0)?).abs())
+            }
             ("plymesh", _) => {
                 let Some(file) = list.string("filename") else { return Ok(None) };
                 Some(self.faces(file, place)?.areas(&map.matrix3))
@@ -195,12 +193,7 @@ impl Reading<'_, '_> {
             (_, Some(mesh)) => {
                 // A patch is two triangles.
                 let each = if shape == "bilinearmesh" { 2 } else { 1 };
-                let areas: Vec<f64> = mesh
-                    .triangles
-                    .chunks(each)
-                    .map(|triangles| triangles.iter().map(|triangle| area(mesh, *triangle, &map)).sum())
-                    .collect();
-                Some(Areas::of(&areas))
+                Some(Faces::of(mesh, mesh.triangles.len() / each).areas(&map.matrix3))
             }
             _ => None,
         })
@@ -250,10 +243,10 @@ mod tests {
             triangles: vec![[0, 1, 2], [1, 3, 2]],
             ..Mesh::default()
         };
-        let map = DAffine3::from_mat3(DMat3::from_cols_array(&[1.0, 2.0, 0.0, -1.0, 0.5, 0.0, 0.25, 3.0, -2.0]));
-        let expected: f64 = mesh.triangles.iter().map(|triangle| area(&mesh, *triangle, &map)).sum();
+        let map = DMat3::from_cols_array(&[1.0, 2.0, 0.0, -1.0, 0.5, 0.0, 0.25, 3.0, -2.0]);
+        let expected: f64 = area_vectors(&mesh, &map).map(DVec3::length).sum();
         for (count, alike) in [(2, false), (1, true)] {
-            let areas = Faces::of(&mesh, count).areas(&map.matrix3);
+            let areas = Faces::of(&mesh, count).areas(&map);
             assert_eq!((areas.count, areas.alike), (count, alike));
             assert!((areas.total / expected - 1.0).abs() < 1e-12, "{} {expected}", areas.total);
         }

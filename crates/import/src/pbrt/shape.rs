@@ -28,21 +28,21 @@ impl Reading<'_, '_> {
     pub(super) fn shape(&mut self, shape: &str, list: &Parameters, place: &str) -> Result<(), String> {
         self.shapes += 1;
         let name = format!("{shape} {}", self.shapes);
-        let number = |key: &str, default: f64| Ok::<f64, String>(list.number(key)?.unwrap_or(default));
         let mut listed = None;
         let (mut value, mut reach, mut has_uvs) = match shape {
             "sphere" => {
-                let radius = number("radius", 1.0)?;
+                let radius = list.number_or("radius", 1.0)?;
                 (json!({ "type": "sphere", "radius_m": radius }), [[-radius; 3], [radius; 3]], false)
             }
             "disk" => {
-                let (height, radius) = (number("height", 0.0)?, number("radius", 1.0)?);
+                let (height, radius) = (list.number_or("height", 0.0)?, list.number_or("radius", 1.0)?);
                 let value =
                     json!({ "type": "disk", "center_m": [0, 0, height], "normal": [0, 0, 1], "radius_m": radius });
                 (value, [[-radius, -radius, height], [radius, radius, height]], false)
             }
             "cylinder" => {
-                let (radius, low, high) = (number("radius", 1.0)?, number("zmin", -1.0)?, number("zmax", 1.0)?);
+                let (radius, low, high) =
+                    (list.number_or("radius", 1.0)?, list.number_or("zmin", -1.0)?, list.number_or("zmax", 1.0)?);
                 let value = json!({
                     "type": "cylinder", "start_m": [0, 0, low], "end_m": [0, 0, high], "radius_m": radius,
                     "capped": false,
@@ -193,8 +193,7 @@ impl Reading<'_, '_> {
             self.builder.leave_out(place, format!("\"{file}\": {what}"));
         }
         let made = self.file_of(&mut part.mesh);
-        let faces = face_count(&bytes).unwrap_or(part.mesh.triangles.len());
-        self.meshes.insert(file.to_owned(), (made.clone(), faces));
+        self.meshes.insert(file.to_owned(), (made.clone(), part.faces));
         Ok(made)
     }
 
@@ -239,36 +238,26 @@ impl Reading<'_, '_> {
         if !matches!(shape, "sphere" | "disk" | "cylinder") {
             return Ok(());
         }
-        let number = |key: &str, default: f64| Ok::<f64, String>(list.number(key)?.unwrap_or(default));
         let mut stated = Vec::new();
-        if number("phimax", 360.0)? < 360.0 {
+        if list.number_or("phimax", 360.0)? < 360.0 {
             stated.push("phimax");
         }
-        if shape == "disk" && number("innerradius", 0.0)? > 0.0 {
+        if shape == "disk" && list.number_or("innerradius", 0.0)? > 0.0 {
             stated.push("innerradius");
         }
         if shape == "sphere" {
-            let radius = number("radius", 1.0)?;
-            let (low, high) = (number("zmin", -radius)?, number("zmax", radius)?);
+            let radius = list.number_or("radius", 1.0)?;
+            let (low, high) = (list.number_or("zmin", -radius)?, list.number_or("zmax", radius)?);
             stated.extend((low > -radius).then_some("zmin"));
             stated.extend((high < radius).then_some("zmax"));
         }
         if !stated.is_empty() {
-            let what = format!("it is a whole {shape}, without its {}", stated.join(" and "));
+            let are = if stated.len() == 1 { "is" } else { "are" };
+            let what = format!("{} {are} ignored: the whole {shape} is used", stated.join(" and "));
             self.builder.approximate(place, what);
         }
         Ok(())
     }
-}
-
-/// How many faces a PLY file says that it has.
-fn face_count(ply: &[u8]) -> Option<usize> {
-    let lines = ply.split(|byte| *byte == b'\n').take_while(|line| !line.starts_with(b"end_header"));
-    let mut lines = lines.filter_map(|line| std::str::from_utf8(line).ok());
-    lines.find_map(|line| match line.split_whitespace().collect::<Vec<_>>()[..] {
-        ["element", "face", count] => count.parse().ok(),
-        _ => None,
-    })
 }
 
 fn triangles(list: &Parameters, place: &str) -> Result<Mesh, String> {

@@ -22,6 +22,11 @@ impl Reading<'_, '_> {
         name: &str,
         textured: bool,
     ) -> Result<Option<Value>, String> {
+        Ok(self.value(list, name, textured)?.map(without_mean))
+    }
+
+    /// The same; an image or a chequerboard has its mean with it, under a key that the format does not have.
+    pub(super) fn value(&mut self, list: &Parameters, name: &str, textured: bool) -> Result<Option<Value>, String> {
         let Some(parameter) = list.get(name) else { return Ok(None) };
         let place = parameter.place.clone();
         let value = match (parameter.kind.as_str(), parameter.numbers()) {
@@ -61,14 +66,14 @@ impl Reading<'_, '_> {
                     let what =
                         format!("\"{name}\" is the same everywhere: the mean of the {kind} \"{texture}\" is used");
                     self.builder.approximate(&place, what);
-                    value.get("mean").cloned().unwrap_or(json!(0.5))
+                    reflectance(mean(&value))
                 } else {
                     value
                 }
             }
             _ => return Err(format!("{place}: \"{name}\" is not a reflectance")),
         };
-        Ok(Some(without_mean(value)))
+        Ok(Some(value))
     }
 
     /// A number from 0 to 1, perhaps by an image, whose channels count by their mean.
@@ -185,9 +190,9 @@ impl Reading<'_, '_> {
         place: &str,
     ) -> Result<(), String> {
         let value = match class {
-            "constant" => self.reflectance(list, "value", true)?.unwrap_or(json!(1.0)),
+            "constant" => self.value(list, "value", true)?.unwrap_or(json!(1.0)),
             "scale" => {
-                let inner = self.reflectance(list, "tex", true)?.unwrap_or(json!(1.0));
+                let inner = self.value(list, "tex", true)?.unwrap_or(json!(1.0));
                 let factor = match list.get("scale") {
                     // An image of heights may have any.
                     Some(number) if kind == "float" && number.kind == "float" && inner["type"] == "image" => {
@@ -199,14 +204,14 @@ impl Reading<'_, '_> {
                 match (inner["type"].as_str(), factor.as_f64()) {
                     (Some("image"), Some(factor)) => scaled(inner, factor),
                     (Some("checker"), Some(factor)) => scaled_fields(inner, factor),
-                    (Some("rgb"), Some(factor)) => {
-                        channels(&inner).map_or(inner, |rgb| reflectance(rgb.map(|v| v * factor)))
-                    }
                     (None, Some(factor)) => json!(inner.as_f64().unwrap_or(1.0) * factor),
-                    _ => {
-                        self.builder.approximate(place, "a product of textures becomes the first of them");
-                        inner
-                    }
+                    _ => match (channels(&inner), channels(&factor)) {
+                        (Some(a), Some(b)) => reflectance(std::array::from_fn(|c| a[c] * b[c])),
+                        _ => {
+                            self.builder.approximate(place, "a product of textures becomes the first of them");
+                            inner
+                        }
+                    },
                 }
             }
             "mix" => self.mixed(list, place)?,
@@ -222,6 +227,7 @@ impl Reading<'_, '_> {
             return Err(format!("{place}: a texture is of type \"spectrum\" or \"float\", not \"{kind}\""));
         }
         list.list_unused(self.builder);
+        self.boards.remove(&name);
         self.textures.insert(name, value);
         Ok(())
     }
@@ -236,12 +242,11 @@ impl Reading<'_, '_> {
                 [0.5; 3]
             });
         }
-        let number = |key: &str, default: f64| Ok::<f64, String>(list.number(key)?.unwrap_or(default));
-        let uv_scale = [0.5 * number("uscale", 1.0)?, 0.5 * number("vscale", 1.0)?];
-        let uv_offset = [0.5 * number("udelta", 0.0)?, 0.5 * number("vdelta", 0.0)?];
+        let uv_scale = [0.5 * list.number_or("uscale", 1.0)?, 0.5 * list.number_or("vscale", 1.0)?];
+        let uv_offset = [0.5 * list.number_or("udelta", 0.0)?, 0.5 * list.number_or("vdelta", 0.0)?];
         let checker = Checker { colours, uv_map: UvMap::scaled(uv_scale, uv_offset) };
         let mapping = list.string("mapping").unwrap_or("uv");
-        if mapping != "uv" || list.number("dimension")?.unwrap_or(2.0) != 2.0 {
+        if mapping != "uv" || list.number_or("dimension", 2.0)? != 2.0 {
             self.builder
                 .approximate(place, "a chequerboard that is not laid over texture coordinates becomes its mean");
             return Ok(checker.mean_reflectance());
@@ -270,7 +275,6 @@ impl Reading<'_, '_> {
                 return Ok(json!(0.5));
             }
         };
-        let number = |key: &str, default: f64| Ok::<f64, String>(list.number(key)?.unwrap_or(default));
         let wrap = match list.string("wrap").unwrap_or("repeat") {
             "clamp" => "clamp",
             "repeat" => "repeat",
@@ -288,11 +292,11 @@ impl Reading<'_, '_> {
         let image = json!({
             "type": "image", "file": name, "wrap": wrap,
             "encoding": if matches!(encoding, Encoding::Linear) { "linear" } else { "auto" },
-            "uv_scale": [number("uscale", 1.0)?, number("vscale", 1.0)?],
-            "uv_offset": [number("udelta", 0.0)?, number("vdelta", 0.0)?],
+            "uv_scale": [list.number_or("uscale", 1.0)?, list.number_or("vscale", 1.0)?],
+            "uv_offset": [list.number_or("udelta", 0.0)?, list.number_or("vdelta", 0.0)?],
             "mean": reflectance(mean),
         });
-        Ok(scaled(image, number("scale", 1.0)?))
+        Ok(scaled(image, list.number_or("scale", 1.0)?))
     }
 }
 
@@ -308,11 +312,13 @@ pub(super) fn number_image(colours: &Value) -> Number {
             keys.insert("factor".to_owned(), json!(factor));
         }
     }
-    let mean = colours["mean"].as_f64().or_else(|| {
-        let channels = colours["mean"]["rgb"].as_array()?;
-        Some(channels.iter().filter_map(Value::as_f64).sum::<f64>() / 3.0)
-    });
-    Number::Image(image, factor * mean.unwrap_or(0.5))
+    Number::Image(image, mean(colours).iter().sum::<f64>() / 3.0)
+}
+
+/// The mean of an image with its factor, or of a chequerboard.
+fn mean(value: &Value) -> [f64; 3] {
+    let factor = value["factor"][0].as_f64().unwrap_or(1.0);
+    channels(&value["mean"]).unwrap_or([0.5; 3]).map(|channel| factor * channel)
 }
 
 /// An image times a factor.
@@ -326,6 +332,8 @@ fn scaled(mut image: Value, factor: f64) -> Value {
 
 /// A chequerboard times a factor.
 fn scaled_fields(mut checker: Value, factor: f64) -> Value {
+    let mean = mean(&checker);
+    checker["mean"] = reflectance(mean.map(|channel| factor * channel));
     for field in ["first", "second"] {
         checker[field] = match &checker[field] {
             Value::Array(rgb) => rgb.iter().map(|v| factor * v.as_f64().unwrap_or(0.0)).collect(),

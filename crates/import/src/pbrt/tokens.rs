@@ -1,5 +1,8 @@
 //! The words of a pbrt file, each with its line; included files in their place.
 
+/// Most words of files that are read at a time, one within the other. Each 16 bytes of a long word count as one more.
+pub(super) const MOST_WORDS: usize = 1 << 26;
+
 /// A word.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Word {
@@ -12,6 +15,16 @@ pub(super) enum Word {
     Close,
 }
 
+impl Word {
+    /// What it counts for.
+    fn size(&self) -> usize {
+        match self {
+            Self::Name(text) | Self::Quoted(text) => 1 + text.len() / 16,
+            Self::Number(_) | Self::Open | Self::Close => 1,
+        }
+    }
+}
+
 /// A word and where it stands.
 #[derive(Clone, Debug)]
 pub(super) struct Token {
@@ -19,15 +32,17 @@ pub(super) struct Token {
     pub line: usize,
 }
 
-/// Splits a text into words.
+/// Splits a text into words, and gives how many they count for.
 ///
 /// # Errors
-/// A sentence with the line.
-pub(super) fn tokens(text: &str) -> Result<Vec<Token>, String> {
+/// A sentence with the line; also if they count for more than `most`, which is what is left of [`MOST_WORDS`].
+pub(super) fn tokens(text: &str, most: usize) -> Result<(Vec<Token>, usize), String> {
     let mut tokens = Vec::new();
+    let mut count = 0;
     let mut line = 1;
     let mut rest = text;
     while let Some(first) = rest.chars().next() {
+        let known = tokens.len();
         match first {
             '\n' => {
                 line += 1;
@@ -50,8 +65,14 @@ pub(super) fn tokens(text: &str) -> Result<Vec<Token>, String> {
                 rest = &rest[end..];
             }
         }
+        if tokens.len() > known {
+            count += tokens.last().map_or(0, |token: &Token| token.word.size());
+            if count > most {
+                return Err(format!("line {line}: files that include one another have more than {MOST_WORDS} words"));
+            }
+        }
     }
-    Ok(tokens)
+    Ok((tokens, count))
 }
 
 /// The text between the quotes that `rest` begins with, and the length with both.
@@ -81,5 +102,19 @@ fn bare(word: &str, line: usize) -> Result<Word, String> {
     match word.parse::<f64>() {
         Ok(value) if value.is_finite() => Ok(Word::Number(value)),
         _ => Err(format!("line {line}: \"{}\" is not a number", word.chars().take(40).collect::<String>())),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_count_and_long_ones_more() {
+        assert_eq!(tokens("Scale 1 [ 2 ] # 3\n", 5).map(|(tokens, count)| (tokens.len(), count)), Ok((5, 5)));
+        let why = tokens("a\nb c", 2).unwrap_err();
+        assert_eq!(why, "line 2: files that include one another have more than 67108864 words");
+        let long = format!("\"{}\"", "a".repeat(32));
+        assert_eq!((tokens(&long, 3).unwrap().1, tokens(&long, 2).is_err()), (3, true));
     }
 }

@@ -17,6 +17,7 @@ mod older;
 mod parameters;
 mod pbrt_directives;
 mod principled;
+mod refused;
 mod relief;
 mod seeds;
 mod sheets;
@@ -34,7 +35,6 @@ use etalon_import::{Imported, import_bytes};
 use etalon_scene::{
     EnvironmentProjection, LightKind, MaterialKind, Projection, Scene, Shape, Side, SpectrumTexture, UvMap,
 };
-use proptest::prelude::*;
 
 const PNG: &[u8] = include_bytes!("../../../scene/tests/files/chequers.png");
 const BSDF: &[u8] = include_bytes!("../../../scene/tests/files/paint.bsdf");
@@ -272,32 +272,6 @@ fn a_sky_of_mitsuba_arrives_with_its_turn() {
     }
 }
 
-#[test]
-fn a_damaged_mitsuba_scene_is_refused_with_its_line() {
-    for (text, part) in [
-        (
-            "<scene version=\"3.0.0\">\n<shape type=\"sphere\"><float name=\"radius\" value=\"x\"/></shape></scene>",
-            "line 2: \"x\" is not a number",
-        ),
-        (
-            "<scene version=\"3.0.0\">\n<shape type=\"sphere\"><ref id=\"gone\"/></shape></scene>",
-            "line 2: nothing has the id \"gone\"",
-        ),
-        ("<scene version=\"3.0.0\">\n<shape type=\"$kind\"/></scene>", "line 2: no <default> gives $kind a value"),
-        (
-            "<scene version=\"3.0.0\"><shape type=\"obj\"><string name=\"filename\" value=\"b.obj\"/></shape></scene>",
-            "\"b.obj\" cannot be read",
-        ),
-        ("<scene version=\"3.0.0\"><include filename=\"itself.xml\"/></scene>", "more than"),
-        ("<scene version=\"3.0.0\"></scene>", "it has no surfaces"),
-        ("<scene>", "line"),
-        ("<world/>", "<world> is not a Mitsuba scene"),
-    ] {
-        let why = refusal("xml", text).replace("it has no <scene>", "line");
-        assert!(why.contains(part) || part == "line", "{text}: {why}");
-    }
-}
-
 const PBRT: &str = r#"
 # A comment.
 Film "rgb" "integer xresolution" 300 "integer yresolution" [ 200 ] "string filename" "a.exr"
@@ -407,50 +381,5 @@ fn a_ball_that_is_stretched_by_less_than_a_millionth_arrives_as_an_instance() {
     for (stretch, instances) in [("1.0000008", 1), ("1.0000001", 0)] {
         let text = format!("WorldBegin\nLightSource \"infinite\"\nScale 1 1 {stretch}\nShape \"sphere\"\n");
         assert_eq!(scene(&imported("pbrt", &text)).instances.len(), instances, "{stretch}");
-    }
-}
-
-#[test]
-fn a_damaged_pbrt_scene_is_refused_with_its_line() {
-    for (text, part) in [
-        ("WorldBegin\nShape \"sphere\" \"float radius\" [ 1 2 ]", "line 2: \"radius\" is not one number"),
-        ("WorldBegin\nTranslate 1 2", "line 2: 3 numbers should follow"),
-        ("WorldBegin\nShape \"sphere", "line 2: a quote is not closed"),
-        ("WorldBegin\nAttributeEnd", "line 2: this end has no matching begin"),
-        ("WorldBegin\nNamedMaterial \"x\"", "line 2: there is no material \"x\""),
-        (
-            "WorldBegin\nShape \"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 ] \"integer indices\" [ 0 1 7 ]",
-            "index 7",
-        ),
-        ("WorldBegin\nShape \"plymesh\" \"string filename\" \"b.ply\"", "\"b.ply\" cannot be read"),
-        ("Include \"itself.pbrt\"", "more than 64"),
-        ("WorldBegin", "it has no surfaces"),
-        ("WorldBegin\nObjectBegin \"a\"", "is not ended"),
-    ] {
-        let why = refusal("pbrt", text);
-        assert!(why.contains(part), "{text}: {why}");
-    }
-}
-
-/// Changes some bytes of a text, so that it stays text.
-fn changed(text: &str, at: usize, with: [u8; 3]) -> String {
-    let mut bytes = text.as_bytes().to_vec();
-    let at = at % (bytes.len() - 3);
-    let letters = b" \"[]<>/=.-019aexyz$#\n";
-    for (byte, w) in bytes[at..at + 3].iter_mut().zip(with) {
-        *byte = letters[w as usize % letters.len()];
-    }
-    String::from_utf8(bytes).unwrap_or_default()
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(400))]
-
-    #[test]
-    fn no_change_of_letters_makes_an_import_panic(at in 0_usize..8000, with in any::<[u8; 3]>(), xml in any::<bool>()) {
-        let (kind, text) = if xml { ("xml", MITSUBA) } else { ("pbrt", PBRT) };
-        if let Ok(imported) = import_bytes(kind, changed(text, at, with).as_bytes(), &near, "", "a") {
-            let _ = imported.parse("a", None);
-        }
     }
 }

@@ -79,9 +79,9 @@ fn the_second_material_of_a_twosided_is_listed_unless_it_is_the_first() {
 #[test]
 fn a_scene_with_the_name_of_another_program_is_told_apart() {
     let pbrt = "LookAt 0 0 5 0 0 0 0 1 0\nWorldBegin\nShape \"sphere\"\n";
-    assert_eq!(refusal("xml", pbrt), "it is a scene of pbrt, and no scene of Mitsuba: name it .pbrt");
+    assert_eq!(refusal("xml", pbrt), "it is a scene of pbrt, not of Mitsuba: rename it to .pbrt");
     let mitsuba = "\u{feff}\n<scene version=\"3.0.0\"><shape type=\"sphere\"/></scene>";
-    assert_eq!(refusal("pbrt", mitsuba), "it is XML, as scenes of Mitsuba are, and no scene of pbrt: name it .xml");
+    assert_eq!(refusal("pbrt", mitsuba), "it is a scene of Mitsuba, not of pbrt: rename it to .xml");
 }
 
 #[test]

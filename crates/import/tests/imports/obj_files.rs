@@ -104,9 +104,9 @@ fn what_has_no_surface_is_listed_once_of_each_kind() {
     assert_eq!(
         said(&imported),
         [
-            "faces: line 7: \"l\", and 1 more of its kind: lines have no surface",
-            "faces: line 9: \"p\": points have no surface",
-            "faces: line 10: \"surf\": free-form surfaces are not read"
+            "group \"faces 0\": line 7: \"l\", and 1 more of its kind: lines have no surface",
+            "group \"faces 0\": line 9: \"p\": points have no surface",
+            "group \"faces 0\": line 10: \"surf\": free-form surfaces are not read"
         ]
     );
     let etalon_scene::Shape::Mesh(mesh) = &scene(&imported).objects[0].shape else { panic!("a mesh") };
@@ -124,4 +124,38 @@ fn smoothing_groups_have_normals() {
     assert!(normals("off").is_empty());
     let half = 0.5_f32.sqrt();
     assert!(normals("1").iter().any(|n| (n[0] - half).abs() < 1e-6 && (n[2] - half).abs() < 1e-6));
+}
+
+#[test]
+fn of_d_and_tr_that_disagree_d_is_used() {
+    let obj = format!("mtllib a.mtl\n{FACE}usemtl veil\nf 1 2 3\n");
+    let imported = imported(&obj, "newmtl veil\nd 0.25\nTr 0.5\n");
+    assert_eq!(
+        said(&imported),
+        ["mtllib: a.mtl: material \"veil\": Tr and d disagree (Tr should be 1 − d): d is used"]
+    );
+    assert_eq!(scene(&imported).objects[0].opacity, 0.25);
+}
+
+/// A file that is placed by a scene of Mitsuba loses the same, and colours of vertices, which Mitsuba does not read there.
+#[test]
+fn what_a_file_of_a_scene_leaves_out_is_listed() {
+    let near = |name: &str| match name {
+        "a.obj" => Ok(b"v 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 0 1 0 1 0 0\nl 1 2\nf 1 2 3\n".to_vec()),
+        "lines.obj" => Ok(b"v 0 0 0\nv 1 0 0\nl 1 2\n".to_vec()),
+        other => nothing(other),
+    };
+    let shape = |name: &str| format!("<shape type=\"obj\"><string name=\"filename\" value=\"{name}\"/></shape>\n");
+    let text = format!("<scene version=\"3.0.0\">\n{}{}</scene>", shape("a.obj"), shape("lines.obj"));
+    let imported = import_bytes("xml", text.as_bytes(), &near, "", "a.xml").unwrap();
+    assert_eq!(
+        said(&imported),
+        [
+            "line 2: \"a.obj\": line 4: \"l\": lines have no surface",
+            "line 3: \"lines.obj\": line 3: \"l\": lines have no surface",
+            "line 3: none of its triangles has an area: it is left out",
+        ]
+    );
+    let scene = scene(&imported);
+    assert!(scene.objects.len() == 1 && scene.objects[0].shape.vertex_colours().is_empty());
 }

@@ -1,6 +1,6 @@
-//! Which triangles have an area.
+//! Areas of triangles, and which have one.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 use crate::linear::unit;
 use crate::model::Mesh;
@@ -8,6 +8,14 @@ use crate::model::Mesh;
 /// Whether a triangle of a mesh has an area, to rounding. A scene drops those that have none.
 pub fn has_area(mesh: &Mesh, triangle: &[u32; 3]) -> bool {
     span_area(triangle.map(|i| mesh.vertices[i as usize]))
+}
+
+/// The normal of each triangle of a mesh times its area, after a linear map.
+pub fn area_vectors(mesh: &Mesh, map: &DMat3) -> impl Iterator<Item = DVec3> {
+    mesh.triangles.iter().map(|corners| {
+        let [a, b, c] = corners.map(|i| DVec3::from(mesh.vertices[i as usize]));
+        0.5 * (*map * (b - a)).cross(*map * (c - a))
+    })
 }
 
 /// Whether a triangle's normal can be told at all: three corners whose edges are not parallel to rounding.

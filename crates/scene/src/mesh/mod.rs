@@ -11,7 +11,7 @@ mod polygon;
 mod smooth;
 mod write;
 
-pub use area::has_area;
+pub use area::{area_vectors, has_area};
 pub use obj::{ObjMaterial, read_obj};
 pub use ply::read_ply;
 pub use polygon::Cut;
@@ -34,7 +34,10 @@ pub struct Part {
     pub mesh: Mesh,
     /// Linear Rec. 709 colours of the faces: none, or one for each triangle.
     pub face_colours: Vec<[f32; 3]>,
-    /// What the file says beyond that and is not used, each in a sentence without a full stop.
+    /// How many faces a PLY file has, each polygon once; 0 of other files.
+    pub faces: usize,
+    /// What the file says beyond that and is not used, each in a sentence without a full stop. The first part has what is said of the whole
+    /// file.
     pub left_out: Vec<String>,
 }
 

@@ -22,7 +22,8 @@ pub type ObjMaterial = tobj::Material;
 /// What an OBJ file holds.
 #[derive(Debug, Default)]
 pub struct ObjFile {
-    /// A part for each run of faces of the same object or group and material.
+    /// A part for each run of faces of the same object or group and material. Where there are no faces but statements that are not used,
+    /// a part without triangles lists these.
     pub parts: Vec<Part>,
     /// The materials that the parts name.
     pub materials: Vec<ObjMaterial>,
@@ -30,8 +31,6 @@ pub struct ObjFile {
     pub missing_libraries: Vec<String>,
     /// Materials that faces name and no library has.
     pub unknown_materials: Vec<String>,
-    /// Statements of the file that are not used, each in a sentence without a full stop.
-    pub left_out: Vec<String>,
     /// The smoothing groups of the triangles of each part, 0 for none; nothing for a part without any.
     smoothing: Vec<Vec<u32>>,
 }
@@ -71,7 +70,7 @@ pub fn read_obj(
         }
     })?;
     let materials = materials.unwrap_or_default();
-    let mut file = ObjFile { missing_libraries: missing.into_inner(), left_out: survey.left_out, ..ObjFile::default() };
+    let mut file = ObjFile { missing_libraries: missing.into_inner(), ..ObjFile::default() };
     let mut groups = survey.smoothing.into_iter();
     for model in models {
         let material = model.mesh.material_id.and_then(|id| materials.get(id)).map(|m| m.name.clone());
@@ -80,6 +79,13 @@ pub fn read_obj(
             file.parts.push(part);
             file.smoothing.push(smoothing);
         }
+    }
+    if !survey.left_out.is_empty() {
+        if file.parts.is_empty() {
+            file.parts.push(Part::default());
+            file.smoothing.push(Vec::new());
+        }
+        file.parts[0].left_out.splice(0..0, survey.left_out);
     }
     let known: HashSet<&str> = materials.iter().map(|material| material.name.as_str()).collect();
     file.unknown_materials = survey.used.into_iter().filter(|name| !known.contains(name.as_str())).collect();

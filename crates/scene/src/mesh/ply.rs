@@ -82,7 +82,7 @@ pub fn read_ply(bytes: &[u8]) -> Result<Part, MeshError> {
         left_out.truncate(20);
         left_out.push(format!("{more} more elements or properties are not used"));
     }
-    Ok(Part { mesh, face_colours, left_out, ..Part::default() })
+    Ok(Part { mesh, face_colours, faces: faces.ends.len(), left_out, ..Part::default() })
 }
 
 /// Where the payload begins.

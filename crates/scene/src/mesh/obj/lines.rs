@@ -7,7 +7,8 @@ use std::io::{self, BufRead, Read};
 
 use crate::mesh::MeshError;
 
-/// Statements of a text file, each with the number of its last line. A line that ends in a backslash goes on in the next. Comments are none.
+/// Statements of a text file, each with the number of its last line. A line that ends in a backslash goes on in the next. Empty lines
+/// and comments are skipped.
 pub(super) struct Statements<'a> {
     bytes: &'a [u8],
     line: usize,

@@ -19,7 +19,9 @@ pub(super) fn read_mtl(bytes: &[u8], library: &str) -> (Vec<ObjMaterial>, Vec<St
         let stated = *material.dissolve.get_or_insert(*share);
         if (stated - share).abs() > 1e-3 {
             let name = &material.name;
-            reading.left_out.push(format!("{library}: material \"{name}\": Tr is not 1 − d: d holds"));
+            reading
+                .left_out
+                .push(format!("{library}: material \"{name}\": Tr and d disagree (Tr should be 1 − d): d is used"));
         }
     }
     (reading.materials, reading.left_out)
