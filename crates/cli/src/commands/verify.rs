@@ -52,9 +52,9 @@ pub(crate) struct VerifyArgs {
     /// Seed of the random numbers.
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// Go on until a relative bias of 0.2 % would be found in a scene, or of 0.02 % if its whole name is given. Each scene takes up to 32 million
-    /// rays for that, and up to 4 billion where these will do. A scene that would need more stops before. Each film then has as few pixels as its
-    /// shape allows, whose samples cover the whole picture.
+    /// Take more rays until a relative bias of 0.2 % would be found, or 0.02 % in a scene given by its whole name. A scene gets up to 32 million
+    /// rays, or up to 4 billion if that many suffice; one that needs more stops earlier. Each film then has as few pixels as its shape allows;
+    /// together they cover the picture.
     #[arg(long)]
     thorough: bool,
     /// Take the first samples of each scene alone. A reading that is too noisy to exclude a known mistake does not fail; what it has seen is
