@@ -13,8 +13,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// Height of the lamp over its radius: the share of a diffuse floor's sky that it fills right below it is 1/25.
 const SHARE: f64 = 0.04;
 
-/// A floor right below a ball that shines, found by chance: each pixel's sample is 0 or 1, and the mean is [`SHARE`] since
-/// E = πL·sin²α below a sphere of half angle α that is above the horizon, and the floor gives back E/π.
+/// A floor right below a ball that shines. Paths find the ball by chance, so a sample of a pixel is 0 or 1. The mean is [`SHARE`]: below a
+/// ball of half angle α that is above the horizon E = πL·sin²α, and the floor gives back E/π.
 fn lottery(seed: u64) -> Prepared {
     lottery_of(seed, 8)
 }

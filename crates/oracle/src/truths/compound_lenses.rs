@@ -262,20 +262,7 @@ fn aspheres() -> Vec<Truth> {
     // A far disk whose image is a quarter of a millimetre wide; the pixel is a tenth of that.
     let (distance, sensor) = (1e5, 0.01);
     let disk_radius = 0.125 / film * distance * 1e-3;
-    // What of the light on the middle of the film comes from the disk, over rays in the meridian.
-    let share = move |lens: &Lens| {
-        let n = 400;
-        let (mut all, mut seen) = (0.0, 0.0);
-        for i in 0..n {
-            let y = semi_aperture * 1.1 * (f64::from(i) + 0.5) / f64::from(n);
-            let Some((at, direction, _)) = lens.trace([0.0; 2], [0.0, y]) else { continue };
-            let weight = y / (y * y + film * film).powi(2);
-            let height = at[1] - direction[1] / direction[2] * (distance + at[2]);
-            all += weight;
-            seen += if height.abs() < disk_radius * 1e3 { weight } else { 0.0 };
-        }
-        seen / all
-    };
+    let share = move |lens: &Lens| lens.share_from_disk(1.1 * semi_aperture, distance, disk_radius * 1e3);
     let conic = -N * N;
     // Powers of ρ of the hyperboloid that the sphere of the same curvature lacks.
     let (k, c) = (1.0 + conic, -1.0 / radius);

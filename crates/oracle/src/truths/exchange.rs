@@ -24,8 +24,8 @@ pub struct ExchangeFile {
     pub bytes: Vec<u8>,
 }
 
-/// The folder with which a renderer joins: a README, the licences, the JSON Schema of the neutral form, the list of truths, and a scene for each
-/// truth, with the files that it names. A judge that needs nothing but Python lies beside them.
+/// The folder that a renderer in any language starts from. It has a README, the licences, the JSON Schema of the neutral form, the list of
+/// truths, and a judge that needs nothing but Python. Each truth has its scene there, with the files that the scene names.
 ///
 /// # Panics
 /// If two scenes name different files alike.

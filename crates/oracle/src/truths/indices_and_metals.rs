@@ -1,5 +1,5 @@
-//! Indices and metals by name, as the far side of an interface, at a slant, and as layers too thick to see through; tints, masking and wave
-//! plates where the other truths do not look.
+//! Indices and metals by name: behind an interface, at a slant, and as layers too thick to see through. Tints, masking and wave plates in
+//! places that the other truths leave out.
 
 use serde_json::{Value, json};
 

@@ -148,6 +148,22 @@ impl Lens {
         Some((origin, direction, share))
     }
 
+    /// The share of the light on the middle of the film that comes from a disk on the axis, at a distance before the last vertex. It is
+    /// counted over rays in the meridian that meet the last vertex plane no farther than `reach` from the axis.
+    pub(super) fn share_from_disk(&self, reach: f64, distance: f64, radius: f64) -> f64 {
+        const RAYS: u32 = 400;
+        let (mut all, mut from_disk) = (0.0, 0.0);
+        for i in 0..RAYS {
+            let y = reach * (f64::from(i) + 0.5) / f64::from(RAYS);
+            let Some((at, direction, _)) = self.trace([0.0; 2], [0.0, y]) else { continue };
+            let weight = y / (y * y + self.film * self.film).powi(2);
+            let height = at[1] - direction[1] / direction[2] * (distance + at[2]);
+            all += weight;
+            from_disk += if height.abs() < radius { weight } else { 0.0 };
+        }
+        from_disk / all
+    }
+
     /// Where on the film, at x = 0, a ray must begin that leaves the middle of the first surface for a height at a distance before it. It is
     /// found by bisection over the film, and over the last plane for the ray that meets that middle.
     pub(super) fn traced_height_on_film(&self, object: f64, height: f64, guess: f64) -> f64 {

@@ -31,7 +31,7 @@ fn pane(height_m: f64, half_m: f64) -> Value {
     json!({ "shape": level_square([0.0, 0.0, height_m], half_m, false), "material": material })
 }
 
-/// A scene in which paths have at most so many edges, but for those through panes.
+/// A scene whose paths have at most `edges` edges. Those through panes do not count.
 fn limited(scene: Scene, edges: u32) -> Scene {
     scene.depth(edges).set("integrator", "count_panes", json!(false))
 }

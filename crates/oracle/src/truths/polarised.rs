@@ -12,8 +12,8 @@ use super::{
 use crate::laws::{Turn, TurnedBy, fresnel_exact, stokes_along};
 use crate::vector::{Vec3, add, cross, dot, scale};
 
-/// Index of polarisers and analysers: diamond's, which reflects 7 times as much at Brewster's angle as glass of 1.5 does, so that a
-/// path that is chosen by chance meets two of them 11 times as often.
+/// Index of polarisers and analysers: diamond's. At Brewster's angle it reflects 7 times as much as glass of 1.5, so 11 times as many
+/// random paths meet two of them.
 const POLARISER: f64 = 2.4;
 
 /// Index of the glass within which light is totally reflected.
@@ -107,12 +107,12 @@ fn rhomb(ray: &Ray, sin2: f64) -> serde_json::Value {
     extruded(&corners.map(at), scale(2.0 * half, deep))
 }
 
-/// A path among the orders of reflection between faces that it meets at right angles: its turns, and the share of light that
-/// they hand on besides those at polarisers and total reflections.
+/// One order of reflection between faces at right angles to the path: the turns of the path, and the share of light that the faces pass on.
+/// Polarisers and total reflections are not part of that share.
 type Order = (Vec<Turn>, f64);
 
-/// A scene of pieces one after the other, 3 m apart, each with its plane of incidence turned from the one before by an angle about
-/// the ray between them, before a lamp; and the direct path through them.
+/// A scene of pieces in a row before a lamp, 3 m apart, and the direct path through them. Each plane of incidence is turned from the one
+/// before by an angle about the ray between them.
 fn chain(pieces: &[(Piece, f64)], spp: u32) -> (Scene, Vec<Turn>) {
     let mut scene = Scene::orthographic([0.0, 0.0, 2.0], [0.0; 3], 1e-3).spp(spp);
     let mut ray = Ray { at: [0.0; 3], travels: [0.0, 0.0, -1.0], plane: [1.0, 0.0, 0.0] };

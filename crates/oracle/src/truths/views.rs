@@ -183,19 +183,7 @@ fn asphere() -> Truth {
     };
     let (distance, c) = (1e5, -1.0 / radius);
     let disk_radius = 0.125 / film * distance * 1e-3;
-    // What of the light on the middle of the film comes from the disk, over rays in the meridian.
-    let share = move |lens: &Lens| {
-        let (mut all, mut seen) = (0.0, 0.0);
-        for i in 0..400 {
-            let y = semi_aperture * 1.1 * (f64::from(i) + 0.5) / 400.0;
-            let Some((at, direction, _)) = lens.trace([0.0; 2], [0.0, y]) else { continue };
-            let weight = y / (y * y + film * film).powi(2);
-            let height = at[1] - direction[1] / direction[2] * (distance + at[2]);
-            all += weight;
-            seen += if height.abs() < disk_radius * 1e3 { weight } else { 0.0 };
-        }
-        seen / all
-    };
+    let share = move |lens: &Lens| lens.share_from_disk(1.1 * semi_aperture, distance, disk_radius * 1e3);
     // The hyperboloid has 1 + κ = 1 − n², the paraboloid 0: what the series of the one has beyond ρ² is missing in the other.
     let k: f64 = 1.0 - index * index;
     let series = [1.0 / 8.0, 1.0 / 16.0, 5.0 / 128.0, 7.0 / 256.0, 21.0 / 1024.0, 33.0 / 2048.0];
