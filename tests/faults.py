@@ -324,7 +324,7 @@ def main():
     parser.add_argument("--quick", action="store_true", help="ask `verify` for the truths that faults name, and no more")
     parser.add_argument("--all", action="store_true", help="do not stop at the first truth or test that fails")
     parser.add_argument("--timeout", type=float, default=3600, metavar="SECONDS", help="for one program of tests")
-    options = parser.parse_args()
+    options = parser.parse_intermixed_args()
     if options.quick and (options.by == "tests" or options.truths or options.all):
         parser.error("--quick asks `verify` for the truths that faults name: no --by tests, --truths or --all beside it")
     faults = catalogue(options.catalogue)
