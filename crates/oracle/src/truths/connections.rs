@@ -99,7 +99,7 @@ impl Plate {
         Scene::light_meter()
             .object(block([-far, -far, bottom], [far, far, bottom + Self::THICKNESS_M]), glass(INDEX))
             .point_light([Self::ASIDE_M, 0.0, Self::LAMP_M], 1.0)
-            .spp(1 << 7)
+            .spp(1 << 9)
     }
 }
 

@@ -67,7 +67,8 @@ fn plates() -> Vec<Truth> {
         (75.0, 0.01, 1024, 0.02),
         (89.0, 0.01, 1024, 0.06),
         (89.9, 0.01, 512, 0.2),
-        (89.99, 0.01, 256, 0.9),
+        // One path in 2000 comes through. 66 do in the first step of a run: of fewer, their number would not tell its own error.
+        (89.99, 0.01, 4096, 0.9),
     ] {
         let cosine = tilt_deg.to_radians().cos();
         let r = fresnel_exact(cosine, 1.5).reflectance();

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use etalon_oracle::statistics::{Budget, Welford};
 use etalon_oracle::subjects::Reading;
-use etalon_oracle::truths::{Claim, Quantity, SceneFile, Truth, judge, judge_to};
+use etalon_oracle::truths::{CUT_SHARE, Claim, Quantity, SceneFile, Truth, judge, judge_to};
 use etalon_scene::{Filter, NamedFile, PathReuse, Scene};
 use etalon_transport::{Counters, Study};
 use miette::Report as Problem;
@@ -229,8 +229,9 @@ fn must_resolve(args: &VerifyArgs, truth: &Truth, rays: u64) -> f64 {
     }
 }
 
-/// Takes more samples, never more seeds to choose from, where the reading was too noisy to exclude a known mistake, or for a thorough
-/// run to see what it wants to. Whether it was depends on the noise alone, so that stopping does not favour a verdict.
+/// Takes more samples, never more seeds to choose from, where the reading was too noisy to exclude a known mistake, where paths that were cut
+/// may have carried too much, or for a thorough run to see what it wants to. Whether it does depends on the noise and on the count of cut paths
+/// alone, not on what was read. So stopping does not favour a verdict.
 fn measured(
     args: &VerifyArgs,
     measurement: &mut Measurement<'_>,
@@ -248,7 +249,9 @@ fn measured(
         }
         let seen = judge(truth, &reading, significance).resolvable_bias;
         let needed = must_resolve(args, truth, measurement.rays());
-        let enough = seen <= needed || needed.is_infinite() || effort >= MOST_TO_COUNT;
+        // A few paths that were cut may have carried much as far as a small number of paths can tell.
+        let cut_counts = reading.cut_bias > CUT_SHARE * seen;
+        let enough = seen <= needed && !cut_counts || needed.is_infinite() || effort >= MOST_TO_COUNT;
         let thorough = || is_worth_more(measurement.rays(), seen_before, seen, wanted);
         if enough && !(args.thorough && thorough()) {
             break Ok(reading);
