@@ -108,7 +108,6 @@ use std::{sync::LazyLock, thread};
 pub use cie171::{LUX, cie171};
 pub use claim::Claim;
 pub use exchange::{ExchangeFile, REMOVED, SET_VERSION, exchange_files};
-use expectation::Expectation;
 pub use expectation::{Mistake, SecondOpinion};
 pub use irradiance::{
     cylinder_factor, disk_irradiance, lambert_polygon, rectangle_corner_factor, sphere_irradiance, stack_transmittance,
