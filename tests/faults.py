@@ -13,8 +13,8 @@ variable ETALON_FAULT selects one by its number. So a fault costs a run, not a b
 
 `run` goes on where it was interrupted: `target/faults/results.jsonl` has a line for each fault and judge. `--by verify` or `--by tests` asks
 one judge alone. A judge stops at the first truth or test that fails; `--all` names them all. `verify` asks first for the truths that the key
-`truths` of a fault names by words, then for all. With `--quick` it asks for the first alone, which takes some seconds a fault: what they notice is
-judged, and what they do not is left open. `--tests` are the options of `cargo test`
+`truths` of a fault names by words, then for all. With `--quick` it takes the first samples of each truth alone (`verify --coarse`), which takes some
+seconds to a minute a fault: what they notice is judged, and what they do not is left open. `--tests` are the options of `cargo test`
 that select tests. The tests of the package `xtask` are left out: they compare the lists with the sources, which the copy has exchanged.
 Number 0 is no fault: it is judged first, and must pass.
 """
@@ -38,8 +38,8 @@ RESULTS = WORK / "results.jsonl"
 OPEN, CLOSE = "«", "»"
 # The crates that have the switch, and a line of their `lib.rs` that it is declared before. All other crates with faults depend on the first.
 SWITCHES = {"crates/optics": "pub mod fresnel;", "crates/control": "pub mod adaptive;"}
-# What a run with --quick gives the truths of a fault.
-QUICK_S = 120
+# What a run with --quick gives all truths.
+QUICK_S = 180
 
 SWITCH = '''//! Which of the faults of `tests/faults` is switched on.
 
@@ -173,17 +173,20 @@ def build(selection):
 
 def judged_by_verify(environment, options, first=""):
     """Names of truths that fail; one alone without --all; None if that is left open. The truths whose names have a word of `first` are asked first."""
-    if first and not options.truths and not options.all:
-        if failed := failing_truths(environment, first.split(), False, QUICK_S if options.quick else None):
-            return failed
     if options.quick:
+        for words in [first.split(), []] if first else [[]]:
+            if failed := failing_truths(environment, ["--coarse", "--", *words], False, QUICK_S):
+                return failed
         return None
-    return failing_truths(environment, options.truths, options.all)
+    if first and not options.truths and not options.all:
+        if failed := failing_truths(environment, ["--", *first.split()], False):
+            return failed
+    return failing_truths(environment, ["--", *options.truths], options.all)
 
 
-def failing_truths(environment, words, ask_all, limit_s=None):
-    """Names of the truths of these words that fail, or the name of the first; of those that are judged within the limit."""
-    command = [str(BUILD / "release" / "etalon"), "verify", "--", *words]
+def failing_truths(environment, asked, ask_all, limit_s=None):
+    """Names of the truths that `verify` with these options and words fails, or the name of the first; of those that are judged within the limit."""
+    command = [str(BUILD / "release" / "etalon"), "verify", *asked]
     failed = []
     with subprocess.Popen(
         command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
@@ -201,7 +204,7 @@ def failing_truths(environment, words, ask_all, limit_s=None):
         ended = timer.is_alive()
         timer.cancel()
     if not failed and process.returncode == 2:
-        raise ValueError(f"no truth has one of the words: {' '.join(words)}")
+        raise ValueError(f"no truth has one of the words: {' '.join(asked)}")
     # Ended by itself without a verdict: it crashed, and somebody notices.
     if not failed and ended and process.returncode != 0:
         failed.append(f"exit status {process.returncode}")
@@ -321,12 +324,12 @@ def main():
     parser.add_argument("--by", choices=["verify", "tests", "both"], default="both")
     parser.add_argument("--tests", default="", metavar="OPTIONS", help="as cargo test takes them, such as '--lib --test integration'")
     parser.add_argument("--truths", nargs="*", default=[], metavar="WORD", help="words of the names of truths; all by default")
-    parser.add_argument("--quick", action="store_true", help="ask `verify` for the truths that faults name, and no more")
+    parser.add_argument("--quick", action="store_true", help="ask `verify --coarse` alone")
     parser.add_argument("--all", action="store_true", help="do not stop at the first truth or test that fails")
     parser.add_argument("--timeout", type=float, default=3600, metavar="SECONDS", help="for one program of tests")
     options = parser.parse_intermixed_args()
     if options.quick and (options.by == "tests" or options.truths or options.all):
-        parser.error("--quick asks `verify` for the truths that faults name: no --by tests, --truths or --all beside it")
+        parser.error("--quick asks `verify --coarse` for all truths: no --by tests, --truths or --all beside it")
     faults = catalogue(options.catalogue)
     try:
         if options.command == "list":
