@@ -23,14 +23,14 @@ pub const CUT_SHARE: f64 = 0.1;
 /// such a reading shows nothing, and the evidence says how many times the samples it takes. The resolvable bias is in units of
 /// the value.
 ///
-/// It also fails when paths were cut that may have carried more than [`CUT_SHARE`] of that bias: what has been left out would no longer be
-/// small beside what the test sees. Where it is, it could hide as much of an error of the other sign, and is added to the resolvable bias.
+/// It also fails when paths were cut that may have carried more than [`CUT_SHARE`] of that bias: what was left out would no longer be small
+/// beside what the test sees. A smaller part could still hide as much of an error of the other sign. So it is added to the resolvable bias.
 pub fn judge(truth: &Truth, reading: &Reading, significance: f64) -> Verdict {
     judge_to(truth, reading, significance, truth.must_resolve())
 }
 
-/// The same of a reading that must be able to see a bias of `needed`, in units of the value. With infinity it fails only if it is wrong, not if it is
-/// noisy or many of its paths were cut: it is one of many seeds that show something together.
+/// The same of a reading that must be able to see a bias of `needed`, in units of the value. With infinity it fails where it is wrong, not where it
+/// shows nothing: as one of many seeds that show something together.
 pub fn judge_to(truth: &Truth, reading: &Reading, significance: f64, needed: f64) -> Verdict {
     if reading.nonfinite > 0 {
         return Verdict::broken(&truth.name, format!("{} samples were not finite numbers", reading.nonfinite));
@@ -51,7 +51,7 @@ pub fn judge_to(truth: &Truth, reading: &Reading, significance: f64, needed: f64
         verdict.evidence += &format!("; paths that were cut may have caused a bias of {:.1e}", reading.cut_bias);
         // What is not a number is not small.
         let small = reading.cut_bias <= most;
-        if !small && (needed.is_finite() || reading.cut_bias.is_nan()) {
+        if !small {
             verdict.pass = false;
             verdict.evidence += &format!(", more than {most:.1e}");
             return verdict;

@@ -229,9 +229,8 @@ fn must_resolve(args: &VerifyArgs, truth: &Truth, rays: u64) -> f64 {
     }
 }
 
-/// Takes more samples, never more seeds to choose from, where the reading was too noisy to exclude a known mistake, where paths that were cut
-/// may have carried too much, or for a thorough run to see what it wants to. Whether it does depends on the noise and on the count of cut paths
-/// alone, not on what was read. So stopping does not favour a verdict.
+/// Takes more samples, never more seeds to choose from, as long as the reading [lacks](lacks) some, or a thorough run does not see what it
+/// wants to. Both depend on the noise and on the count of cut paths, not on what was read. So stopping does not favour a verdict.
 fn measured(
     args: &VerifyArgs,
     measurement: &mut Measurement<'_>,
@@ -249,17 +248,23 @@ fn measured(
         }
         let seen = judge(truth, &reading, significance).resolvable_bias;
         let needed = must_resolve(args, truth, measurement.rays());
-        // A few paths that were cut may have carried much as far as a small number of paths can tell.
-        let cut_counts = reading.cut_bias > CUT_SHARE * seen;
-        let enough = seen <= needed && !cut_counts || needed.is_infinite() || effort >= MOST_TO_COUNT;
+        let times = lacks(seen, needed, reading.cut_bias);
+        let enough = times <= 1.0 || effort >= MOST_TO_COUNT;
         let thorough = || is_worth_more(measurement.rays(), seen_before, seen, wanted);
         if enough && !(args.thorough && thorough()) {
             break Ok(reading);
         }
-        effort =
-            if enough { effort.saturating_mul(more_to_see(seen, wanted)) } else { to_count(effort, seen / needed) };
+        effort = if enough { effort.saturating_mul(more_to_see(seen, wanted)) } else { to_count(effort, times) };
         seen_before = seen;
     }
+}
+
+/// How many times finer a reading must become to count: at most 1 if it does. It sees a bias of `seen` and must see `needed`, and paths that were
+/// cut may have carried at most [`CUT_SHARE`] of what it sees. A few cut paths among few may have carried more than that as far as their number
+/// can tell; a longer reading tells.
+fn lacks(seen: f64, needed: f64, cut_bias: f64) -> f64 {
+    let noise = if seen <= needed || needed.is_infinite() { 0.0 } else { seen / needed };
+    noise.max(cut_bias / (CUT_SHARE * seen))
 }
 
 /// The effort after this one, by which a reading saw a bias of `times` what it must: about as much as it takes at 1/√n.
@@ -316,6 +321,19 @@ mod tests {
             [116, 166, 200, 200, 200, 200]
         );
         assert_eq!(to_count(1, 1.01), 2);
+    }
+
+    #[test]
+    fn a_reading_counts_if_it_is_fine_enough_and_cut_paths_carry_little() {
+        assert_eq!(lacks(1e-3, 2e-3, 0.0), 0.0);
+        assert_eq!(lacks(4e-3, 2e-3, 1e-4), 2.0);
+        // Of what is seen a tenth may be missing, however coarse the reading may be.
+        for needed in [2e-3, f64::INFINITY] {
+            assert!(lacks(1e-3, needed, 0.9e-4) <= 1.0 && (lacks(1e-3, needed, 3e-4) - 3.0).abs() < 1e-12, "{needed}");
+        }
+        // No noise, or noise that is no number: more samples of a coarse run would tell no more.
+        assert!([0.0, f64::NAN].iter().all(|seen| lacks(*seen, f64::INFINITY, 0.0) <= 1.0));
+        assert!(lacks(f64::NAN, 2e-3, 0.0).is_nan() && lacks(0.0, 0.0, 0.0) <= 1.0);
     }
 
     #[test]
