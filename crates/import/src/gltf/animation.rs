@@ -10,8 +10,8 @@ use gltf::{Document, Node};
 use super::accessor::numbers;
 use crate::{Builder, Moment};
 
-/// A cubic curve is followed by this many straight pieces between two keyframes, or turns about fixed axes: they are off by at most
-/// 1/8·(1/16)² of the curve's second derivative over the square of that time, 5·10⁻⁴ of it.
+/// A cubic curve is followed by this many pieces between two keyframes: straight ones, or turns about fixed axes. They are off by at most
+/// 1/8·(1/16)² = 5·10⁻⁴ of the curve's second derivative times the square of the time between the keyframes.
 const CUBIC_PIECES: usize = 16;
 /// A step takes this share of the shutter's time, since what moves cannot jump.
 const STEP_SHARE: f64 = 1.0 / 1048576.0;

@@ -170,8 +170,8 @@ fn reflectance_of_face() -> f64 {
     fresnel_exact(1.0, DENSE).reflectance()
 }
 
-/// What two rhombs one behind the other pass on, all orders of reflection between their four faces: each passage through a
-/// rhomb multiplies by z, of which the phase is what s gets behind p. Real and imaginary part.
+/// What two rhombs one behind the other pass on, with all orders of reflection between their four faces. Each passage through a rhomb
+/// multiplies by z, whose phase is how far s falls behind p. Real and imaginary part.
 fn two_rhombs([re, im]: [f64; 2]) -> [f64; 2] {
     let times = |a: [f64; 2], b: [f64; 2]| [a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]];
     let over = |a: [f64; 2], b: [f64; 2]| {
@@ -231,9 +231,9 @@ impl Walk {
     }
 }
 
-/// The Stokes vector at the eye by way of one rhomb or two before the mirror next to the lamp, all orders of at most eight reflections at faces,
-/// over what the mirrors reflect of light whose polarisations are averaged at each. `direct` is the direct path. If it is `analysed`, it begins
-/// with a mirror, from which the planes of the rhombs are turned by 45°.
+/// The Stokes vector at the eye, by way of one rhomb or two before the mirror next to the lamp. It has all orders of at most eight
+/// reflections at faces, and is divided by what the mirrors reflect of light whose polarisations are averaged at each. `direct` is the direct
+/// path. If it is `analysed`, it begins with a mirror, from which the planes of the rhombs are turned by 45°.
 fn along_orders(direct: &[Turn], analysed: bool, sin2: f64, right: Vec3) -> [f64; 4] {
     let (first, rest) = direct.split_at(usize::from(analysed));
     let (mirror, between) = rest.split_last().expect("a chain ends with a mirror");

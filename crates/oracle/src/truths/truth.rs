@@ -245,8 +245,8 @@ impl Truth {
     }
 
     /// The same camera, film and band under a constant sky of radiance 1, and nothing else. A sensor that answers 1 to a constant spectrum
-    /// reads 1. A photometric sensor does not answer 1 to a constant spectrum that is cut to a band: where the truth has a
-    /// [`band_nm`](Self::band_nm), its readings are divided by the mean of this picture.
+    /// reads 1. A photometric sensor does not answer 1 to a constant spectrum that is cut to a band. So where the truth has a
+    /// [`band_nm`](Self::band_nm), readings are divided by the mean of this picture.
     #[must_use]
     pub fn white_scene(&self) -> String {
         let mut scene: Value = serde_json::from_str(&self.scene).expect("a truth's scene is JSON");
