@@ -49,6 +49,8 @@ pub struct ErrorReport {
     pub interval_95: Option<[f64; 2]>,
     /// Mean luminance of the picture.
     pub mean_y: f64,
+    /// 95 % confidence interval of it; `None` where that of the error is unknown.
+    pub mean_y_interval_95: Option<[f64; 2]>,
     /// Independent replicates of each pixel, whose scatter is the error.
     pub replicates: u32,
     /// 0: normal replicates, 1: each pixel's error is one outlier.
@@ -106,6 +108,7 @@ impl ErrorReport {
             relative_rmse: error.is_known().then_some(error.relative_rmse),
             interval_95: error.has_interval().then_some(error.interval),
             mean_y: error.mean_y,
+            mean_y_interval_95: error.mean_y_interval,
             replicates,
             tail_index: error.tail_index,
             heavy_tailed: error.is_heavy_tailed(),

@@ -3,7 +3,7 @@
 use etalon_oracle::statistics::{Welford, student_two_sided_quantile};
 use etalon_scene::Scene;
 use etalon_transport::accuracy::{HEAVY_PIXEL_TAIL, HEAVY_TAIL, ImageError};
-use etalon_transport::{Control, Film, prepare};
+use etalon_transport::{Control, Film, Prepared, prepare};
 use serde_json::{Value, json};
 
 fn parse(json: &Value) -> Scene {
@@ -74,20 +74,20 @@ fn caustic(lamp_radius_m: f64) -> Scene {
 
 /// What re-renders showed.
 #[derive(Debug)]
-struct Coverage {
+pub(crate) struct Coverage {
     /// Share of all pixels with light in all renders whose 95 % interval held the truth, and its standard error by the scatter of renders.
-    pixels: f64,
-    pixels_error: f64,
+    pub(crate) pixels: f64,
+    pub(crate) pixels_error: f64,
     /// Share of renders whose mean Y was within its interval.
-    pictures: f64,
+    pub(crate) pictures: f64,
     /// Share of renders whose interval of the error holds the mean error of all.
-    errors: f64,
+    pub(crate) errors: f64,
     /// Mean of the tail index.
-    tail_index: f64,
-    pixel_tail_index: f64,
+    pub(crate) tail_index: f64,
+    pub(crate) pixel_tail_index: f64,
     /// Mean relative error, as the renders state it, and as it was.
-    stated: f64,
-    actual: f64,
+    pub(crate) stated: f64,
+    pub(crate) actual: f64,
 }
 
 /// One of many renders of a scene, held to the mean of all.
@@ -101,13 +101,9 @@ struct Render {
     square: f64,
 }
 
-/// Renders a scene with `seeds` seeds. The mean of all renders stands for the truth: its own error, 1/√seeds of theirs, moves coverage by
-/// less than 0.1 %.
-fn renders(scene: &Scene, samples: u32, seeds: u64) -> Vec<Render> {
-    let mut scene = scene.clone();
-    scene.integrator.spp = samples;
+/// The mean of all renders stands for the truth: its own error, 1/√seeds of theirs, moves coverage by less than 0.1 %.
+fn renders(prepared: &mut Prepared, seeds: u64) -> Vec<Render> {
     let mut films: Vec<Film> = Vec::new();
-    let mut prepared = prepare(&scene).unwrap();
     let rect = prepared.whole(None).rect;
     for seed in 0..seeds {
         prepared.reseed(seed);
@@ -121,24 +117,21 @@ fn renders(scene: &Scene, samples: u32, seeds: u64) -> Vec<Render> {
     let lit = truth.iter().filter(|&&truth| truth > 0.0).count() as f64;
     let level = truth.iter().sum::<f64>() / count;
     let quantile = student_two_sided_quantile(0.05, 3.0);
-    // With 3 degrees of freedom for each pixel, that of the whole picture has about 3·3/5 of them for each.
-    let quantile_of_picture = student_two_sided_quantile(0.05, 1.8 * count);
     let judged = |film: &Film| {
-        let (mut held, mut variance_of_sum, mut squares) = (0_u32, 0.0, 0.0);
+        let (mut held, mut squares) = (0_u32, 0.0);
         for ((x, y), truth) in rect.pixels().zip(&truth) {
             let pixel = film.pixel(x, y);
             let ([variance], freedom) = pixel.variance(|xyz| [xyz[1]]).unwrap();
             assert_eq!(freedom, 3);
             let off = (pixel.xyz()[1] - truth).abs();
             held += u32::from(*truth > 0.0 && off <= quantile * variance.sqrt());
-            variance_of_sum += variance;
             squares += off * off;
         }
-        let off = (film.mean_y(rect) - level).abs() * count;
+        let error = film.error(rect).unwrap();
         Render {
-            error: film.error(rect).unwrap(),
+            error,
             pixels: f64::from(held) / lit,
-            mean: off <= quantile_of_picture * variance_of_sum.sqrt(),
+            mean: error.mean_y_interval.is_some_and(|[low, high]| (low..=high).contains(&level)),
             square: squares / count / (level * level),
         }
     };
@@ -146,7 +139,14 @@ fn renders(scene: &Scene, samples: u32, seeds: u64) -> Vec<Render> {
 }
 
 fn coverage(scene: &Scene, samples: u32, seeds: u64) -> Coverage {
-    let renders = renders(scene, samples, seeds);
+    let mut scene = scene.clone();
+    scene.integrator.spp = samples;
+    coverage_of(&mut prepare(&scene).unwrap(), seeds)
+}
+
+/// Renders a prepared scene with `seeds` seeds.
+pub(crate) fn coverage_of(prepared: &mut Prepared, seeds: u64) -> Coverage {
+    let renders = renders(prepared, seeds);
     let mean = |of: fn(&Render) -> f64| renders.iter().map(of).collect::<Welford>().mean();
     let actual = mean(|render| render.square).sqrt();
     let holds = |[low, high]: [f64; 2]| (low..=high).contains(&actual);

@@ -7,6 +7,7 @@ mod bsdf;
 mod common;
 mod compound_lens;
 mod coverage;
+mod coverage_of_strategies;
 mod detail;
 mod dimensions;
 mod direct_light;

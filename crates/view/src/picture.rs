@@ -5,7 +5,7 @@ use etalon_control::Canvas;
 use etalon_optics::colour::rec709_from_xyz;
 use etalon_picture::develop::{colour_of, luminance_errors};
 use etalon_picture::{Attributes, ERROR_PREFIX, ErrorInfo, ExrFile, Picture, PictureError};
-use etalon_transport::accuracy::{ErrorSum, interval};
+use etalon_transport::accuracy::ErrorSum;
 use etalon_transport::film::XyzSum;
 use etalon_transport::{Film, Pixel};
 
@@ -177,8 +177,9 @@ pub(crate) fn of_coarse(coarse: &CoarsePixels, about: About) -> Result<Snapshot,
             coarse.replicates,
             &ImageError {
                 relative_rmse,
-                interval: interval(relative_rmse, all.uncertainty()),
+                interval: all.interval(1),
                 mean_y: all.mean_y(),
+                mean_y_interval: all.mean_y_interval(1),
                 tail_index: all.tail_index(),
                 pixel_tail_index: all.pixel_tail_index(),
                 noisy_pixels: 0,
@@ -228,6 +229,8 @@ pub(crate) fn of_file(file: ExrFile, title: String) -> Result<Snapshot, PictureE
                 relative_rmse: error.relative_rmse,
                 interval: error.interval,
                 mean_y: luminance.values.iter().map(|y| f64::from(*y)).sum::<f64>() / luminance.values.len() as f64,
+                // A file has the errors of pixels alone.
+                mean_y_interval: None,
                 tail_index: error.tail_index,
                 pixel_tail_index: None,
                 noisy_pixels: 0,

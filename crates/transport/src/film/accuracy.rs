@@ -7,14 +7,13 @@
 //! A picture in which no sample found light has an unknown error, not none: its samples cannot tell whether there is light that they
 //! missed.
 
+mod interval;
+
 use crate::film::{Film, Pixel, PixelRect, XyzSum};
 use std::f64::consts::PI;
 
 /// Side of the tiles among which the noisiest is sought, pixels.
 pub const REGION: u32 = 16;
-
-/// Two-sided 95 % of the normal distribution.
-const Z_95: f64 = 1.959_963_984_540_054;
 
 /// [`ImageError::tail_index`] above which the interval of a picture's error is too short in most renders. Measured: below, the
 /// mean luminance of pictures with caustics lies in its 95 % interval in 93 to 97 % of all renders; above, in 4 to 92 %
@@ -47,6 +46,8 @@ pub struct ImageError {
     pub interval: [f64; 2],
     /// The picture's level: its mean Y.
     pub mean_y: f64,
+    /// 95 % confidence interval of it; `None` where that of E is unknown.
+    pub mean_y_interval: Option<[f64; 2]>,
     /// How far the squared error is carried by single replicates: 0 for normally distributed ones, 1 if each pixel's error
     /// is one outlier among its replicates. Rare bright paths do this, and then both errors and intervals are too small in
     /// most renders and too large in the few that found such a path. `None` with fewer than four replicates.
@@ -120,6 +121,7 @@ pub struct ErrorSum {
     skew: f64,
     /// The first if replicates were distributed normally.
     normal_uncertainty: f64,
+    carried: Carried,
     /// Σ of variance times largest share of one group of replicates.
     outlier: f64,
     /// Pixels that have such a share, and those where it is above [`ALONE`].
@@ -154,6 +156,7 @@ impl ErrorSum {
         self.skew += skew;
         // Var(V) = 2σ⁴/ν, and V² is in the mean (ν + 2)/ν times σ⁴.
         self.normal_uncertainty += 2.0 / f64::from(freedom + 2) * variance * variance;
+        self.carried.push(variance, f64::from(freedom));
         if let Some(share) = outlier_share(pixel) {
             self.outlier += variance * share;
             self.grouped += 1;
@@ -220,6 +223,27 @@ impl ErrorSum {
         square.max(0.25 * self.normal_uncertainty / (v * v)).sqrt()
     }
 
+    /// 95 % confidence interval of E where these are all pixels of the picture, of which up to `correlated` have a common part of error. 0 to infinity where
+    /// it is unknown.
+    ///
+    /// ln E is, to first order, a sum over pixels: among B of them with a common part of error its variance is at most B times that of independent ones
+    /// (Cauchy and Schwarz), as if there were B times fewer.
+    pub fn interval(&self, correlated: u32) -> [f64; 2] {
+        let together = f64::from(correlated);
+        let relative_rmse = self.relative_rmse().unwrap_or(f64::INFINITY);
+        interval::of_positive(relative_rmse, self.uncertainty() * together.sqrt(), self.carried.freedom() / together)
+    }
+
+    /// 95 % confidence interval of the mean Y, as [`ErrorSum::interval`]; `None` where that is unknown.
+    pub fn mean_y_interval(&self, correlated: u32) -> Option<[f64; 2]> {
+        let (n, together) = (self.pixels as f64, f64::from(correlated));
+        // Of a sum of independent estimates of variance (Satterthwaite 1946, *An Approximate Distribution of Estimates of Variance Components*).
+        let freedom = 2.0 * self.variance * self.variance / self.normal_uncertainty / together;
+        let (variance, skew) = (self.variance / (n * n) * together, self.skew / (n * n * n) * together * together);
+        let interval = interval::of_mean(self.mean_y(), variance, skew, freedom);
+        self.uncertainty().is_finite().then_some(interval)
+    }
+
     /// See [`ImageError::tail_index`].
     pub fn tail_index(&self) -> Option<f64> {
         // The largest share of four normal residuals in their sum of squares is, in the mean, ¾ of the mean squared cosine
@@ -243,6 +267,37 @@ impl ErrorSum {
 
     fn mean_variance(&self) -> f64 {
         self.variance / self.pixels as f64
+    }
+}
+
+/// How many pixels carry what is known of the error: few, where few have met bright paths.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Carried {
+    /// The first variance that is not 0: the fourth powers of others are in units of its own.
+    unit: f64,
+    /// Σ of squared variances, and of their variances if replicates were distributed normally.
+    squares: f64,
+    uncertainty: f64,
+}
+
+impl Carried {
+    /// An estimated variance v with ν degrees of freedom. For normal replicates the mean of v² is (ν + 2)/ν σ⁴, and that of v⁴ is
+    /// (ν + 2)(ν + 4)(ν + 6)/ν³ σ⁸. So v⁴ · 8(ν + 3)/((ν + 4)(ν + 6)) is in the mean the variance of v².
+    fn push(&mut self, variance: f64, freedom: f64) {
+        if variance == 0.0 {
+            return;
+        }
+        if self.unit == 0.0 {
+            self.unit = variance;
+        }
+        let square = (variance / self.unit).powi(2);
+        self.squares += square;
+        self.uncertainty += square * square * 8.0 * (freedom + 3.0) / ((freedom + 4.0) * (freedom + 6.0));
+    }
+
+    /// Degrees of freedom of Σv², by which E's interval is known: twice its square over its variance.
+    fn freedom(&self) -> f64 {
+        2.0 * self.squares * self.squares / self.uncertainty
     }
 }
 
@@ -311,10 +366,9 @@ impl Film {
         let share = |part: f64, whole: f64| if whole > 0.0 { part / whole } else { 0.0 };
         Some(ImageError {
             relative_rmse,
-            // ln E is, to first order, a sum over pixels: among B of them with a common part of error its variance is at most B times
-            // that of independent ones (Cauchy and Schwarz).
-            interval: interval(relative_rmse, all.uncertainty() * f64::from(self.correlated_pixels()).sqrt()),
+            interval: all.interval(self.correlated_pixels()),
             mean_y: all.mean_y(),
+            mean_y_interval: all.mean_y_interval(self.correlated_pixels()),
             tail_index: all.tail_index(),
             pixel_tail_index: all.pixel_tail_index(),
             noisy_pixels: all.grouped,
@@ -326,13 +380,6 @@ impl Film {
             unknown_pixels: all.unknown,
         })
     }
-}
-
-/// The 95 % interval of a positive quantity that is known to a relative standard error: normal in its logarithm. 0 to infinity where
-/// either is infinite, which stands for unknown.
-pub fn interval(value: f64, relative_error: f64) -> [f64; 2] {
-    let factor = (Z_95 * relative_error).exp();
-    if value.is_finite() && factor.is_finite() { [value / factor, value * factor] } else { [0.0, f64::INFINITY] }
 }
 
 #[cfg(test)]
