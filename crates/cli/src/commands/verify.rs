@@ -32,10 +32,10 @@ pub(crate) struct VerifyArgs {
     /// Test only scenes whose name contains one of these words, or that need one of these abilities, such as scattering. The word media stands for absorption and scattering. Default: all.
     names: Vec<String>,
     /// Render nothing. Judge the pictures of another renderer in this folder, named NAME.exr.
-    #[arg(long, value_name = "DIR", conflicts_with_all = ["seed", "thorough", "coarse", "threads"])]
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["seed", "thorough", "sees", "coarse", "threads"])]
     images: Option<PathBuf>,
     /// Render nothing. Write the scenes and the expected values to this folder, for another renderer.
-    #[arg(long, value_name = "DIR", conflicts_with_all = ["images", "json", "seed", "thorough", "coarse", "threads"])]
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["images", "json", "seed", "thorough", "sees", "coarse", "threads"])]
     export: Option<PathBuf>,
     /// Test a public suite of test cases instead of our own.
     #[arg(long, value_enum, value_name = "SUITE")]
@@ -57,13 +57,23 @@ pub(crate) struct VerifyArgs {
     /// together they cover the picture.
     #[arg(long)]
     thorough: bool,
+    /// The same until another bias would be found, such as 0.5%.
+    #[arg(long, value_name = "PERCENT", value_parser = crate::args::percentage, conflicts_with = "thorough")]
+    sees: Option<f64>,
     /// Take the first samples of each scene alone. A reading that is too noisy to exclude a known mistake does not fail; what it has seen is
     /// printed as always.
-    #[arg(long, conflicts_with = "thorough")]
+    #[arg(long, conflicts_with_all = ["thorough", "sees"])]
     coarse: bool,
     /// Number of threads. Default: all cores.
     #[arg(long, alias = "nthreads", value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
     threads: Option<u32>,
+}
+
+impl VerifyArgs {
+    /// Whether more rays are taken than a reading needs to count.
+    fn is_thorough(&self) -> bool {
+        self.thorough || self.sees.is_some()
+    }
 }
 
 pub(crate) fn run(args: VerifyArgs) -> Outcome {

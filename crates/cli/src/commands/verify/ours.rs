@@ -93,7 +93,8 @@ impl<'a> Measurement<'a> {
         if truth.crop_px.is_none() {
             // Fewer pixels, with the samples of all: the same mean, of points that are spread more evenly over the film and over whatever
             // follows. For a thorough run as few as there can be.
-            let side = if args.thorough { gcd(scene.film.width, scene.film.height) } else { merged_side_px(&scene) };
+            let side =
+                if args.is_thorough() { gcd(scene.film.width, scene.film.height) } else { merged_side_px(&scene) };
             let film = &mut scene.film;
             (film.width, film.height) = (film.width / side, film.height / side);
             scene.integrator.spp = scene.integrator.spp.saturating_mul(side * side);
@@ -221,7 +222,7 @@ pub(super) fn judged<'a>(
 
 /// The bias that a reading must be able to see that has taken this many rays.
 fn must_resolve(args: &VerifyArgs, truth: &Truth, rays: u64) -> f64 {
-    let of_all = args.names.is_empty() && args.suite.is_none() && !args.thorough;
+    let of_all = args.names.is_empty() && args.suite.is_none() && !args.is_thorough();
     match () {
         () if args.coarse => f64::INFINITY,
         () if of_all && rays >= RAYS_TO_SEE => truth.must_resolve_with(truth.must_see.max(LEAST_SEEN)),
@@ -238,7 +239,7 @@ fn measured(
     interrupt: &Interrupt,
 ) -> Result<Reading, Stop> {
     let truth = measurement.truth;
-    let wanted = thorough_sees(&args.names, truth) * truth.value().abs();
+    let wanted = thorough_sees(args, truth) * truth.value().abs();
     let (mut effort, mut seen_before) = (measurement.effort.max(1), f64::INFINITY);
     loop {
         let reading = measurement.render_to(effort, significance, interrupt)?;
@@ -251,7 +252,7 @@ fn measured(
         let times = lacks(seen, needed, reading.cut_bias);
         let enough = times <= 1.0 || effort >= MOST_TO_COUNT;
         let thorough = || is_worth_more(measurement.rays(), seen_before, seen, wanted);
-        if enough && !(args.thorough && thorough()) {
+        if enough && !(args.is_thorough() && thorough()) {
             break Ok(reading);
         }
         effort = if enough { effort.saturating_mul(more_to_see(seen, wanted)) } else { to_count(effort, times) };
@@ -280,9 +281,10 @@ fn more_to_see(seen: f64, wanted: f64) -> u32 {
     if seen <= wanted * f64::from(MORE_TO_COUNT).sqrt() { MORE_TO_COUNT } else { MORE }
 }
 
-/// What a thorough run of these names wants to see of a truth, relative. A name that is only a part of the truth's asks for a group.
-fn thorough_sees(names: &[String], truth: &Truth) -> f64 {
-    if names.contains(&truth.name) { THOROUGH_SEES_BY_NAME } else { THOROUGH_SEES }
+/// What a thorough run wants to see of a truth, relative. A name that is only a part of the truth's asks for a group.
+fn thorough_sees(args: &VerifyArgs, truth: &Truth) -> f64 {
+    let by_default = || if args.names.contains(&truth.name) { THOROUGH_SEES_BY_NAME } else { THOROUGH_SEES };
+    args.sees.unwrap_or_else(by_default)
 }
 
 /// Whether a thorough run goes on that saw `seen` by this many rays, and `before` by the step before. Up to [`THOROUGH_RAYS`] it does, as
@@ -309,9 +311,13 @@ mod tests {
     #[test]
     fn a_thorough_run_sees_most_where_a_whole_name_is_given() {
         let truth = truths().into_iter().find(|truth| truth.name == "eye-in-glass").expect("there is such a truth");
-        let sees = |name: &str| thorough_sees(&[name.to_owned()], &truth);
-        assert_eq!(sees("eye-in-glass"), 2e-4);
-        assert_eq!([sees("eye"), thorough_sees(&[], &truth)], [2e-3; 2]);
+        let sees = |names: &[&str], asked| {
+            let names = names.iter().map(|name| (*name).to_owned()).collect();
+            thorough_sees(&VerifyArgs { names, sees: asked, ..by_default() }, &truth)
+        };
+        assert_eq!(sees(&["eye-in-glass"], None), 2e-4);
+        assert_eq!([sees(&["eye"], None), sees(&[], None)], [2e-3; 2]);
+        assert_eq!(sees(&["eye-in-glass"], Some(5e-3)), 5e-3);
     }
 
     #[test]
@@ -373,6 +379,7 @@ mod tests {
             json: false,
             seed: 1,
             thorough: false,
+            sees: None,
             coarse: false,
             threads: Some(1),
         }
