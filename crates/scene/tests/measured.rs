@@ -1,7 +1,7 @@
 //! Measured BRDFs: a file arrives, what is wrong is refused with its place.
 
 use crate::common::{Parts, RIGHT};
-use etalon_scene::{Code, Loaded, MaterialKind, MeasuredSurface, NamedFile, SceneErrors, Side};
+use etalon_scene::{Code, Loaded, MaterialKind, MeasuredSurface, NamedFile, SceneErrors};
 
 const PAINT: &[u8] = include_bytes!("files/paint.bsdf");
 
@@ -38,9 +38,8 @@ fn surface(kind: &MaterialKind) -> &MeasuredSurface {
 
 #[test]
 fn the_front_reflects_unless_the_scene_says_otherwise() {
-    let MaterialKind::OneSided { kind, side: Side::Front } = material(r#""file": "paint.bsdf""#) else {
-        panic!("one side")
-    };
+    let MaterialKind::TwoSided { front: kind, back } = material(r#""file": "paint.bsdf""#) else { panic!("two sides") };
+    assert_eq!(*back, MaterialKind::Black);
     let brdf = &surface(&kind).brdf;
     assert!(surface(&kind).is_isotropic() && surface(&kind).is_coloured() && !brdf.is_zero());
     assert_eq!(brdf.wavelengths_nm(), [400.0, 550.0, 700.0]);

@@ -61,11 +61,17 @@ impl Walk<'_, '_, '_> {
         let look = match element.plugin() {
             "twosided" => {
                 let nested = element.nested("bsdf", self.ids)?;
-                if nested.iter().any(|other| !std::ptr::eq(*other, nested[0])) {
-                    let what = "its back has the first of its two materials, too: a surface has one";
-                    self.builder.approximate(&place, what);
-                }
                 let mut look = self.first(&nested, &place)?;
+                if let Some(other) = nested.iter().find(|other| !std::ptr::eq(**other, nested[0])) {
+                    let back = self.look(other)?;
+                    if back.detail != look.detail || back.opacity != look.opacity {
+                        let what = "maps and masks of its back are left out: those of its front stand for both";
+                        self.builder.leave_out(&place, what);
+                    }
+                    look.size = look.size.blend(back.size, &place)?;
+                    look.material = json!({ "type": "two-sided", "front": look.material, "back": back.material });
+                    self.builder.spend(&look.material, &place)?;
+                }
                 change_sides(&mut look.material, &|_| "both");
                 look
             }

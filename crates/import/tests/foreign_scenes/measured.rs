@@ -1,6 +1,6 @@
 //! Measured materials of Mitsuba.
 
-use etalon_scene::{MaterialKind, Side};
+use etalon_scene::MaterialKind;
 
 use super::{BSDF, imported, refusal, said, scene};
 
@@ -21,7 +21,8 @@ fn a_measured_material_arrives_with_its_file_on_the_side_that_was_measured() {
     let scene = scene(&imported);
     assert_eq!(said(&imported), Vec::<String>::new());
     let kind = |object: usize| &scene.materials[scene.objects[object].material].kind;
-    let MaterialKind::OneSided { kind: front, side: Side::Front } = kind(0) else { panic!("{:?}", kind(0)) };
+    let MaterialKind::TwoSided { front, back } = kind(0) else { panic!("{:?}", kind(0)) };
+    assert_eq!(**back, MaterialKind::Black);
     let (MaterialKind::Measured { surface }, MaterialKind::Measured { surface: both }) = (&**front, kind(1)) else {
         panic!("{front:?}, {:?}", kind(1))
     };

@@ -12,7 +12,8 @@ fn material(shape: &str) -> MaterialKind {
 
 fn side(kind: &MaterialKind) -> Option<Side> {
     match kind {
-        MaterialKind::OneSided { side, .. } => Some(*side),
+        MaterialKind::TwoSided { back, .. } if **back == MaterialKind::Black => Some(Side::Front),
+        MaterialKind::TwoSided { front, .. } if **front == MaterialKind::Black => Some(Side::Back),
         _ => None,
     }
 }
@@ -38,6 +39,21 @@ fn what_only_reflects_is_black_from_behind_unless_it_is_twosided() {
     let two = "<bsdf type=\"diffuse\" id=\"m\"/><shape type=\"rectangle\"><bsdf type=\"twosided\"><ref id=\"m\"/></bsdf></shape>\
                <shape type=\"rectangle\"><ref id=\"m\"/></shape>";
     assert_eq!(side(&material(two)), Some(Side::Front));
+}
+
+/// Of two materials the second is that of the back, and of a turned surface that of the front.
+#[test]
+fn a_twosided_surface_may_have_two_materials() {
+    let both = "<bsdf type=\"twosided\"><bsdf type=\"conductor\"/><bsdf type=\"diffuse\"/></bsdf>";
+    for flipped in [false, true] {
+        let kind = material(&format!(
+            "<shape type=\"rectangle\"><boolean name=\"flip_normals\" value=\"{flipped}\"/>{both}</shape>"
+        ));
+        let MaterialKind::TwoSided { front, back } = &kind else { panic!("{kind:?}") };
+        let (metal, paint) = if flipped { (back, front) } else { (front, back) };
+        assert!(matches!(**metal, MaterialKind::Mirror { .. }), "{metal:?}");
+        assert!(matches!(**paint, MaterialKind::Lambert { .. }), "{paint:?}");
+    }
 }
 
 #[test]

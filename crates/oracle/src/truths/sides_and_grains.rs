@@ -9,7 +9,7 @@ use super::{
     measured_files::{Azimuths, Made},
     photometric_weight,
     principled_lobes::{DIFFUSE, Surface, direction, grazing},
-    scene::{Scene, black, disk, level_square},
+    scene::{Scene, black, disk, lambert, level_square, mirror, sphere},
     tiles::{mean, row_of, with},
 };
 use crate::{
@@ -19,7 +19,7 @@ use crate::{
 };
 
 pub(super) fn truths() -> Vec<Truth> {
-    vec![brushed_coat(), principled(), measured(), dye(), disc(), cloth()]
+    vec![brushed_coat(), principled(), measured(), dye(), disc(), cloth(), sheet(true), sheet(false), walls()]
 }
 
 const UP: Vec3 = [0.0, 0.0, 1.0];
@@ -117,6 +117,41 @@ fn principled() -> Truth {
     .or_else("turned the other way", of(Surface { turned_deg: 50.0, ..surface }))
     .or_else("the widths exchanged", of(Surface { alpha: [0.15, 0.45], ..surface }))
     .sees(2e-3)
+}
+
+/// A sheet that is a mirror on its front and matte on its back, under a sky of 1.
+fn sheet(from_its_front: bool) -> Truth {
+    const MIRROR: f64 = 0.9;
+    const MATTE: f64 = 0.4;
+    let sheet = json!({ "type": "two-sided", "front": mirror(MIRROR), "back": lambert(MATTE) });
+    let scene = Scene::orthographic([0.4, 0.0, 2.0], [0.0; 3], 0.1)
+        .thing(json!({ "shape": level_square([0.0; 3], 1.0, from_its_front), "material": sheet }))
+        .sky(1.0);
+    let (name, value, other) = match from_its_front {
+        true => ("two-sided-sheet-from-its-front", MIRROR, MATTE),
+        false => ("two-sided-sheet-from-its-back", MATTE, MIRROR),
+    };
+    Truth::new(name, &scene, value, "ρ of the side that is seen")
+        .because("Under an even sky of 1 a surface shows the share of light that the side toward the eye reflects.")
+        .or_else("the other side", other)
+        .or_else("both sides at once", 0.5 * (MIRROR + MATTE))
+        .or_else("black from there", 0.0)
+        .sees(2e-3)
+}
+
+/// A round room whose walls shine inward, with another reflectance outside.
+fn walls() -> Truth {
+    const INSIDE: f64 = 0.5;
+    const OUTSIDE: f64 = 0.2;
+    let wall = json!({ "type": "two-sided", "front": lambert(OUTSIDE), "back": lambert(INSIDE) });
+    let scene = Scene::pinhole([0.1, 0.2, -0.3], [0.5, -0.6, 0.9], 90.0)
+        .thing(json!({ "shape": sphere([0.0; 3], 1.0), "material": wall, "emission": { "radiance": 0.5, "sides": "back" } }))
+        .spp(256);
+    Truth::new("room-with-two-sided-walls", &scene, 1.0, "Le/(1 − ρ), Le = ρ = ½ inside")
+        .because("A closed room whose walls all emit Le and reflect ρ diffusely is evenly bright. What its outside reflects does not count.")
+        .or_else("the outside's reflectance", 0.5 / (1.0 - OUTSIDE))
+        .or_else("walls that are black inside", 0.5)
+        .sees(0.01)
 }
 
 /// A measured grain that is turned and reflects on both sides, beside one that reflects on its back alone.

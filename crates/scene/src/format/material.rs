@@ -14,6 +14,7 @@ mod sheet;
 mod thin_film;
 mod tint;
 mod translucent;
+mod two_sided;
 
 use etalon_optics::OutsideFit;
 
@@ -46,6 +47,7 @@ use sheet::{PolariserMaterial, RetarderMaterial, polariser, retarder};
 use thin_film::{FilmLayerForm, thin_film};
 use tint::tinted;
 use translucent::{TranslucentMaterial, translucent};
+use two_sided::two_sided;
 
 crate::record! {
     /// Ideal diffuse reflection, on both sides unless "sides" says otherwise.
@@ -154,12 +156,11 @@ crate::keywords!(MaterialSides {
 impl MaterialSides {
     /// The material that reflects on these sides.
     fn of(self, kind: MaterialKind) -> MaterialKind {
-        let side = match self {
-            Self::Both => return kind,
-            Self::Front => Side::Front,
-            Self::Back => Side::Back,
-        };
-        MaterialKind::OneSided { kind: Box::new(kind), side }
+        match self {
+            Self::Both => kind,
+            Self::Front => MaterialKind::one_sided(kind, Side::Front),
+            Self::Back => MaterialKind::one_sided(kind, Side::Back),
+        }
     }
 }
 
@@ -235,6 +236,17 @@ crate::record! {
 }
 
 crate::record! {
+    /// A surface whose sides differ. Neither lets light through.
+    pub(crate) struct TwoSidedMaterial + comment {
+        /// The side that the surface normal points into: the name of one of "materials" that stands before this one, or a material of its own. Its own
+        /// "sides" do not count.
+        front: Required<Box<MaterialUse>>,
+        /// The other side.
+        back: Required<Box<MaterialUse>>,
+    }
+}
+
+crate::record! {
     /// A body of another material, and what fills it: light that the material lets in, or an "opacity" lets by, is in a medium there.
     pub(crate) struct FilledMaterial + comment {
         /// Its surface: the name of one of "materials" that stands before this one, or a material of its own.
@@ -278,6 +290,7 @@ crate::variants! {
         "measured" => Measured(MeasuredMaterial),
         "principled" => Principled(PrincipledMaterial),
         "blend" => Blend(BlendMaterial),
+        "two-sided" => TwoSided(TwoSidedMaterial),
         "filled" => Filled(FilledMaterial),
         "boundary" => Boundary(BoundaryMaterial),
         "black" => Black(BlackMaterial),
@@ -303,6 +316,7 @@ impl MaterialForm {
             Self::Measured(m) => m.at,
             Self::Principled(m) => m.at,
             Self::Blend(m) => m.at,
+            Self::TwoSided(m) => m.at,
             Self::Filled(m) => m.at,
             Self::Boundary(m) => m.at,
             Self::Black(m) => m.at,
@@ -395,6 +409,7 @@ pub(crate) fn material<'f>(
         MaterialForm::Measured(form) => measured(form, files, reader),
         MaterialForm::Principled(form) => principled(form, spectra, files, reader),
         MaterialForm::Blend(form) => blend(form, before, spectra, files, reader),
+        MaterialForm::TwoSided(form) => two_sided(form, before, spectra, files, reader),
         MaterialForm::Filled(form) => return filled(form, before, spectra, files, reader),
         MaterialForm::Boundary(boundary) => {
             let medium = medium(boundary.medium.as_ref()?, spectra, files, reader)?;

@@ -262,12 +262,12 @@ pub enum MaterialKind {
         /// The number.
         by: NumberTexture,
     },
-    /// A material that reflects on one side of the surface and is black on the other.
-    OneSided {
-        /// What it does there.
-        kind: Box<MaterialKind>,
-        /// The side.
-        side: Side,
+    /// A surface whose sides differ. Neither lets light through.
+    TwoSided {
+        /// What it is on the side that the surface normal points into.
+        front: Box<MaterialKind>,
+        /// On the other side.
+        back: Box<MaterialKind>,
     },
     /// A metal, an interface or a pane, of whose light a share is left; or plastic, of whose coat's reflection one is.
     Tinted {
@@ -370,7 +370,7 @@ macro_rules! parameters {
                 }
                 Self::Measured { surface } => vec![$of::Measured(surface)],
                 Self::Blend { parts, .. } => parts.$iter().flat_map(|(_, part)| part.$name()).collect(),
-                Self::OneSided { kind, .. } => kind.$name(),
+                Self::TwoSided { front, back } => front.$name().into_iter().chain(back.$name()).collect(),
                 Self::Tinted { kind, reflected, transmitted } => {
                     let tints = [$of::Reflectance(reflected), $of::Reflectance(transmitted)];
                     tints.into_iter().chain(kind.$name()).collect()

@@ -112,8 +112,8 @@ impl Scene {
 /// A kind of a material, or of a part of it.
 fn check_material(kind: &MaterialKind, material: &Material) -> Result<(), ReferenceError> {
     let owner = || format!("material \"{}\"", material.name);
-    if let MaterialKind::OneSided { kind, .. } = kind {
-        return check_material(kind, material);
+    if let MaterialKind::TwoSided { front, back } = kind {
+        return [front, back].into_iter().try_for_each(|side| check_material(side, material));
     }
     if let MaterialKind::Tinted { kind: of, .. } = kind {
         check_material(of, material)?;

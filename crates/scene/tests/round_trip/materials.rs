@@ -161,7 +161,7 @@ fn materials_and_spectra() {
         reflectance: Spectrum::Constant(0.125).into(),
         fluorescence: Fluorescence::Matrix(matrix),
     };
-    assert_eq!(kind(&scene, "vest"), &MaterialKind::OneSided { kind: Box::new(vest), side: Side::Front });
+    assert_eq!(kind(&scene, "vest"), &MaterialKind::one_sided(vest, Side::Front));
     let emission = Spectrum::tabulated(vec![500.0, 600.0], vec![1.0; 2], Outside::Zero).unwrap();
     let dye = Fluorophore::new(Spectrum::Constant(0.75), emission, 0.5, scene.integrator.wavelength_range_nm).unwrap();
     let marker = MaterialKind::Fluorescent {
@@ -170,7 +170,7 @@ fn materials_and_spectra() {
     };
     assert_eq!(kind(&scene, "marker"), &marker);
     let clay = MaterialKind::OrenNayar { reflectance: Spectrum::Constant(0.5).into(), roughness: 0.4 };
-    assert_eq!(kind(&scene, "clay"), &MaterialKind::OneSided { kind: Box::new(clay), side: Side::Back });
+    assert_eq!(kind(&scene, "clay"), &MaterialKind::one_sided(clay, Side::Back));
     let [reflectance, transmittance] = [0.25, 0.625].map(|share| Spectrum::Constant(share).into());
     assert_eq!(kind(&scene, "leaf"), &MaterialKind::Translucent { reflectance, transmittance });
     let (reflectance, coat) = (Spectrum::Constant(0.25).into(), RefractiveIndex::Constant(1.5));
@@ -190,7 +190,7 @@ fn materials_and_spectra() {
     let stained = MaterialKind::Dielectric { interior, exterior, priority: None, film: None };
     assert_eq!(kind(&scene, "stained"), &tinted(stained, [0.75, 0.25]));
     let silver = MaterialKind::Conductor { metal: Metal::Index(ComplexIndex::named("Ag").unwrap()), film: None };
-    let bronzed = MaterialKind::OneSided { kind: Box::new(tinted(silver, [0.5, 1.0])), side: Side::Front };
+    let bronzed = MaterialKind::one_sided(tinted(silver, [0.5, 1.0]), Side::Front);
     assert_eq!(kind(&scene, "bronzed"), &bronzed);
     let (reflectance, coat) = (Spectrum::Constant(0.25).into(), RefractiveIndex::Constant(1.5));
     let lacquered = MaterialKind::Plastic {
@@ -222,7 +222,7 @@ fn materials_and_spectra() {
             clear_coat_alpha: 0.0625,
         }),
     };
-    assert_eq!(kind(&scene, "car"), &MaterialKind::OneSided { kind: Box::new(car), side: Side::Front });
+    assert_eq!(kind(&scene, "car"), &MaterialKind::one_sided(car, Side::Front));
     let pot = MaterialKind::Principled {
         reflectance: Spectrum::Constant(0.5).into(),
         index: RefractiveIndex::Constant(1.5),

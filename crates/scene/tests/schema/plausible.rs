@@ -4,11 +4,11 @@ use etalon_scene::{MaterialKind as M, Metal, PolarisingSheet, SpectrumTexture};
 
 /// Whether its numbers are possible at a wavelength, nm.
 pub(crate) fn kind(kind: &M, nm: f64, holds_medium: bool) -> bool {
-    let kind = match kind {
-        M::OneSided { kind, .. } => kind,
-        kind => kind,
-    };
     match kind {
+        M::TwoSided { front, back } => {
+            let side = |kind: &M| !matches!(kind, M::TwoSided { .. }) && self::kind(kind, nm, holds_medium);
+            side(front) && side(back)
+        }
         M::Tinted { kind: of, reflected, transmitted } => {
             let share = |tint: &SpectrumTexture| match tint {
                 SpectrumTexture::Uniform(spectrum) => (0.0..=1.0).contains(&spectrum.eval(nm)),
@@ -67,7 +67,5 @@ pub(crate) fn kind(kind: &M, nm: f64, holds_medium: bool) -> bool {
         M::Measured { surface } => surface.rotation_rad.is_finite() && surface.at_nm.is_none(),
         M::Boundary { .. } => holds_medium,
         M::Black => true,
-        // One side has no sides of its own.
-        M::OneSided { .. } => false,
     }
 }

@@ -98,7 +98,7 @@ impl Bsdf {
                 reradiation.excitation.draw_half_toward(light);
             }
             Self::Blend(blend) => blend.parts_mut().for_each(|part| part.expect_light(light)),
-            Self::OneSided(one) => one.bsdf_mut().expect_light(light),
+            Self::TwoSided(both) => both.sides_mut().into_iter().for_each(|side| side.expect_light(light)),
             _ => {}
         }
     }
@@ -108,7 +108,7 @@ impl Bsdf {
         match self {
             Self::Fluorescent(surface) => f64::from(u8::from(surface.reradiation.is_some())),
             Self::Blend(blend) => blend.fluorescent_parts(at, wo).iter().map(|(_, share)| share).sum(),
-            Self::OneSided(one) => one.seen(at.normal, wo).map_or(0.0, |bsdf| bsdf.fluorescent_share(at, wo)),
+            Self::TwoSided(both) => both.seen(at.normal, wo).fluorescent_share(at, wo),
             _ => 0.0,
         }
     }
@@ -130,7 +130,7 @@ impl Bsdf {
                 let part = part.fluorescent_part(at, wo, (u / of_part).min(1.0_f64.next_down()))?;
                 Some(FluorescentPart { share, ..part })
             }
-            Self::OneSided(one) => one.seen(at.normal, wo)?.fluorescent_part(at, wo, u),
+            Self::TwoSided(both) => both.seen(at.normal, wo).fluorescent_part(at, wo, u),
             _ => None,
         }
     }

@@ -20,7 +20,6 @@ mod metal;
 mod microfacet;
 mod mirror;
 mod mueller;
-mod one_sided;
 mod oren_nayar;
 mod plastic;
 mod polarising_sheet;
@@ -37,6 +36,7 @@ mod tests;
 mod thin_dielectric;
 mod tinted;
 mod translucent;
+mod two_sided;
 
 pub use blend::Blend;
 pub use conductor::Conductor;
@@ -50,7 +50,6 @@ pub use measured::Measured;
 pub use metal::PathMetal;
 pub use mirror::Mirror;
 pub use mueller::Lobe;
-pub use one_sided::OneSided;
 pub use oren_nayar::OrenNayar;
 pub use plastic::Plastic;
 pub use polarising_sheet::PolarisingSheet;
@@ -64,6 +63,7 @@ pub use table_store::keep_tables;
 pub use thin_dielectric::ThinDielectric;
 pub use tinted::Tinted;
 pub use translucent::Translucent;
+pub use two_sided::TwoSided;
 
 use crate::texture::PathTexture;
 use etalon_optics::{Lanes, Vec3};
@@ -105,8 +105,8 @@ pub enum Bsdf {
     Principled(Box<Principled>),
     /// A mixture of others.
     Blend(Blend),
-    /// Another on one side.
-    OneSided(OneSided),
+    /// Another on each side.
+    TwoSided(TwoSided),
     /// Another whose light is coloured.
     Tinted(Tinted),
     /// No scattering at all.
@@ -131,7 +131,7 @@ pub fn properties(kind: &MaterialKind) -> Properties {
         MaterialKind::Fluorescent { reflectance, .. } => Fluorescent::properties(reflectance),
         MaterialKind::Measured { surface } => Measured::properties(surface),
         MaterialKind::Principled { facets, .. } => Principled::properties(facets),
-        MaterialKind::OneSided { kind, .. } => OneSided::properties(properties(kind)),
+        MaterialKind::TwoSided { front, back } => TwoSided::properties([properties(front), properties(back)]),
         MaterialKind::Tinted { kind, .. } => Tinted::properties(properties(kind)),
         MaterialKind::Blend { parts, .. } => Blend::properties(parts.iter().map(|(_, part)| properties(part))),
         MaterialKind::Boundary { .. } | MaterialKind::Black => {
@@ -199,7 +199,9 @@ impl Bsdf {
                 let parts = parts.iter().map(|(place, part)| (*place, Self::new(part, range_nm)));
                 Self::Blend(Blend::new(parts, by.clone()))
             }
-            MaterialKind::OneSided { kind, side } => Self::OneSided(OneSided::new(Self::new(kind, range_nm), *side)),
+            MaterialKind::TwoSided { front, back } => {
+                Self::TwoSided(TwoSided::new(Self::new(front, range_nm), Self::new(back, range_nm)))
+            }
             MaterialKind::Tinted { kind, reflected, transmitted } => {
                 let [reflected, transmitted] =
                     [reflected, transmitted].map(|texture| PathTexture::new(texture, range_nm));
@@ -320,7 +322,7 @@ impl Bsdf {
             Self::Measured(measured) => measured.eval(lambda_nm, n, at, wo, wi),
             Self::Principled(surface) => surface.eval(lambda_nm, n, at, wo, wi),
             Self::Blend(blend) => blend.eval(lambda_nm, n, at, wo, wi),
-            Self::OneSided(one) => one.eval(lambda_nm, n, at, wo, wi),
+            Self::TwoSided(both) => both.eval(lambda_nm, n, at, wo, wi),
             Self::Tinted(tinted) => tinted.eval(lambda_nm, n, at, wo, wi),
             Self::Mirror(_)
             | Self::Conductor(_)
@@ -382,7 +384,7 @@ impl Bsdf {
             Self::Measured(measured) => measured.draw(n, at, wo, [u[1], u[2]]),
             Self::Principled(surface) => surface.draw(n, at, wo, u),
             Self::Blend(blend) => blend.draw(lambda_nm, n, at, wo, u),
-            Self::OneSided(one) => one.draw(lambda_nm, n, at, wo, u),
+            Self::TwoSided(both) => both.draw(lambda_nm, n, at, wo, u),
             Self::Tinted(tinted) => tinted.draw(lambda_nm, n, at, wo, u),
             Self::Black => None,
         }

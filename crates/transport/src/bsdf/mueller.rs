@@ -91,7 +91,7 @@ impl Bsdf {
             Self::RoughDielectric(glass) => glass.mueller(lambda_nm, n, at, (wo, wi, x)),
             Self::Plastic(plastic) => plastic.mueller(lambda_nm, n, at, (wo, wi, x), lobe),
             Self::Blend(blend) => blend.mueller(lambda_nm, n, at, (wo, wi, x), lobe),
-            Self::OneSided(one) => one.mueller(lambda_nm, n, at, (wo, wi, x), lobe),
+            Self::TwoSided(both) => both.mueller(lambda_nm, n, at, (wo, wi, x), lobe),
             Self::Tinted(tinted) => tinted.mueller(lambda_nm, n, at, (wo, wi, x), lobe),
             Self::Lambert(_)
             | Self::OrenNayar(_)
@@ -110,7 +110,7 @@ impl Bsdf {
             Self::RoughDielectric(glass) => glass.prepare_polarisation(),
             Self::Plastic(plastic) => plastic.prepare_polarisation(),
             Self::Blend(blend) => blend.prepare_polarisation(),
-            Self::OneSided(one) => one.prepare_polarisation(),
+            Self::TwoSided(both) => both.prepare_polarisation(),
             Self::Tinted(tinted) => tinted.bsdf_mut().prepare_polarisation(),
             Self::Lambert(_)
             | Self::Mirror(_)

@@ -147,7 +147,7 @@ mod tests {
             kinds.push(MaterialKind::Tinted { kind: Box::new(kinds[kind].clone()), reflected, transmitted });
         }
         for (kind, side) in [(11, Side::Front), (12, Side::Back), (14, Side::Front)] {
-            kinds.push(MaterialKind::OneSided { kind: Box::new(kinds[kind].clone()), side });
+            kinds.push(MaterialKind::one_sided(kinds[kind].clone(), side));
         }
         for (r, t) in [(0.5, 0.25), (0.0, 0.5), (0.0, 0.0)] {
             let [reflectance, transmittance] = [r, t].map(|share| Spectrum::Constant(share).into());

@@ -5,9 +5,7 @@ use etalon_oracle::{
     laws,
     subjects::{DeltaLobe, Density, Scattered, Scatters},
 };
-use etalon_scene::{
-    Grooves, InternalReflection, MaterialKind, Metal, PolarisingSheet, Side, SpectrumTexture, ThinFilm,
-};
+use etalon_scene::{Grooves, InternalReflection, MaterialKind, Metal, PolarisingSheet, SpectrumTexture, ThinFilm};
 use etalon_transport::{
     bsdf::{Bsdf, Shading},
     mis,
@@ -201,13 +199,7 @@ fn deltas(kind: &MaterialKind, wo: [f64; 3], wavelength_nm: f64) -> Vec<DeltaLob
             };
             (0..parts.len()).flat_map(part).collect()
         }
-        MaterialKind::OneSided { kind, side } => {
-            if (*side == Side::Front) == (wo[2] > 0.0) {
-                deltas(kind, wo, wavelength_nm)
-            } else {
-                Vec::new()
-            }
-        }
+        MaterialKind::TwoSided { front, back } => deltas(if wo[2] > 0.0 { front } else { back }, wo, wavelength_nm),
         MaterialKind::Tinted { kind, reflected, transmitted } => {
             let tint = |l: DeltaLobe| {
                 let share = if l.wi[2] * wo[2] > 0.0 { reflected } else { transmitted };

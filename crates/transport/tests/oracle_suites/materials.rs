@@ -364,7 +364,7 @@ fn brushed_materials_are_others_turned_about_their_normal() {
 }
 
 fn one_sided(kind: MaterialKind, side: Side) -> Material {
-    Material::new(MaterialKind::OneSided { kind: Box::new(kind), side })
+    Material::new(MaterialKind::one_sided(kind, side))
 }
 
 fn clay() -> MaterialKind {

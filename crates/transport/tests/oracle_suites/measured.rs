@@ -48,7 +48,7 @@ fn two_sided(phi_i: &[f32]) -> Material {
 
 fn one_sided() -> Material {
     let kind = MaterialKind::Measured { surface: surface(&[0.0]) };
-    Material::new(MaterialKind::OneSided { kind: Box::new(kind), side: Side::Front })
+    Material::new(MaterialKind::one_sided(kind, Side::Front))
 }
 
 /// Half of the surface.

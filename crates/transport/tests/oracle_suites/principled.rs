@@ -52,7 +52,7 @@ fn black_metal() -> Material {
 }
 
 fn one_sided() -> Material {
-    Material::new(MaterialKind::OneSided { kind: Box::new(all_lobes()), side: Side::Back })
+    Material::new(MaterialKind::one_sided(all_lobes(), Side::Back))
 }
 
 fn with_clay() -> Material {

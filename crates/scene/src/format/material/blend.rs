@@ -18,7 +18,10 @@ pub const MOST_BLEND_PARTS: usize = 8 * MOST_WIDTHS;
 fn parts(kind: &MaterialKind) -> usize {
     match kind {
         MaterialKind::Blend { parts: several, .. } => several.iter().map(|(_, part)| parts(part)).sum(),
-        MaterialKind::OneSided { kind, .. } | MaterialKind::Tinted { kind, .. } => parts(kind),
+        MaterialKind::TwoSided { front, back } => {
+            [front, back].into_iter().filter(|side| ***side != MaterialKind::Black).map(|side| parts(side)).sum()
+        }
+        MaterialKind::Tinted { kind, .. } => parts(kind),
         _ => 1,
     }
 }

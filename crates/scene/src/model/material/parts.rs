@@ -1,6 +1,6 @@
 //! What materials are made of: the parts of blends, the numbers of each part, the media that they part.
 
-use super::{MaterialKind, Microfacets};
+use super::{MaterialKind, Microfacets, Side};
 use crate::model::{NumberTexture, Parameter, ParameterMut, SpectrumTexture, ThinFilm};
 use crate::texture::ImageTexture;
 use etalon_optics::{RefractiveIndex, Spectrum};
@@ -72,11 +72,23 @@ impl MaterialKind {
         Self::Blend { parts: vec![(0.0, first), (1.0, second)], by: weight.into() }
     }
 
-    /// The materials that it is made of: of a blend those of its parts, of a one-sided one what it is on that side, of any other itself.
+    /// A material that reflects on one side of the surface and is black on the other.
+    pub fn one_sided(kind: Self, side: Side) -> Self {
+        let [kind, black] = [kind, Self::Black].map(Box::new);
+        match side {
+            Side::Front => Self::TwoSided { front: kind, back: black },
+            Side::Back => Self::TwoSided { front: black, back: kind },
+        }
+    }
+
+    /// The materials that it is made of: of a blend those of its parts, of a two-sided one those of the sides that are not black, of any other itself.
     pub fn parts(&self) -> Vec<&Self> {
         match self {
             Self::Blend { parts, .. } => parts.iter().flat_map(|(_, part)| part.parts()).collect(),
-            Self::OneSided { kind, .. } | Self::Tinted { kind, .. } => kind.parts(),
+            Self::TwoSided { front, back } => {
+                [front, back].into_iter().filter(|side| ***side != Self::Black).flat_map(|side| side.parts()).collect()
+            }
+            Self::Tinted { kind, .. } => kind.parts(),
             other => vec![other],
         }
     }
@@ -85,7 +97,11 @@ impl MaterialKind {
     pub fn parts_mut(&mut self) -> Vec<&mut Self> {
         match self {
             Self::Blend { parts, .. } => parts.iter_mut().flat_map(|(_, part)| part.parts_mut()).collect(),
-            Self::OneSided { kind, .. } | Self::Tinted { kind, .. } => kind.parts_mut(),
+            Self::TwoSided { front, back } => {
+                let sides = [front, back].into_iter().filter(|side| ***side != Self::Black);
+                sides.flat_map(|side| side.parts_mut()).collect()
+            }
+            Self::Tinted { kind, .. } => kind.parts_mut(),
             other => vec![other],
         }
     }
@@ -94,7 +110,7 @@ impl MaterialKind {
     pub fn image(&self) -> Option<&ImageTexture> {
         match self {
             Self::Blend { parts, by } => parts.iter().find_map(|(_, part)| part.image()).or_else(|| by.image()),
-            Self::OneSided { kind, .. } => kind.image(),
+            Self::TwoSided { front, back } => front.image().or_else(|| back.image()),
             Self::Tinted { kind, reflected, transmitted } => {
                 reflected.image().or_else(|| transmitted.image()).or_else(|| kind.image())
             }
@@ -159,8 +175,12 @@ impl MaterialKind {
     }
 
     fn flatten_shares(&mut self) {
-        if let Self::OneSided { kind, .. } | Self::Tinted { kind, .. } = self {
+        if let Self::Tinted { kind, .. } = self {
             kind.flatten_shares();
+        }
+        if let Self::TwoSided { front, back } = self {
+            front.flatten_shares();
+            back.flatten_shares();
         }
         if let Self::Blend { parts, by } = self {
             parts.iter_mut().for_each(|(_, part)| part.flatten_shares());
