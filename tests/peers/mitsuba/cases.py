@@ -58,6 +58,7 @@ CASES = [
     of("spectra"),
     of("sides", sides="one"),
     of("sides", sides="two"),
+    of("sides", sides="apart"),
     of("plastic", kind="plastic", nonlinear="false"),
     of("plastic", kind="plastic", nonlinear="true"),
     *(of("rough-plastic", SUM, alpha=alpha, distribution=distribution, nonlinear=nonlinear)

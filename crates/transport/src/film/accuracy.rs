@@ -16,7 +16,7 @@ use std::f64::consts::PI;
 pub const REGION: u32 = 16;
 
 /// [`ImageError::tail_index`] above which the interval of a picture's error is too short in most renders. Measured: below, the
-/// mean luminance of pictures with caustics lies in its 95 % interval in 93 to 97 % of all renders; above, in 4 to 92 %
+/// mean luminance of pictures with caustics lies in its 95 % interval in 92 to 98 % of all renders; above, in 22 to 98 %
 /// (`docs/accuracy.md`, `tests/coverage.rs`).
 pub const HEAVY_TAIL: f64 = 0.15;
 /// [`ImageError::pixel_tail_index`] above which the intervals of single pixels are too short. Chosen on the ready-made scenes: below, and
