@@ -178,7 +178,7 @@ pub(super) fn conductor_reflectance(n: f64, k: f64, cosine: f64) -> f64 {
 }
 
 /// The same by the real formulas of ellipsometry (a² + b²), for the second opinion.
-fn conductor_by_real_formulas(n: f64, k: f64, cosine: f64) -> f64 {
+pub(super) fn conductor_by_real_formulas(n: f64, k: f64, cosine: f64) -> f64 {
     let (c2, s2) = (cosine * cosine, 1.0 - cosine * cosine);
     let difference = n * n - k * k - s2;
     let sum = (difference * difference + 4.0 * n * n * k * k).sqrt();

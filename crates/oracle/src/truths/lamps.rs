@@ -4,13 +4,14 @@ use std::f64::consts::PI;
 
 use super::{
     Truth,
-    scene::{Scene, black, disk, lambert, sphere},
+    scene::{Scene, black, disk, lambert, shown, sphere},
 };
 
 pub(super) fn truths() -> Vec<Truth> {
     let mut list = far_spheres();
     list.extend(phases());
     list.push(planck());
+    list.extend(["light", "mis"].map(eclipse));
     list
 }
 
@@ -112,4 +113,41 @@ fn planck() -> Truth {
         1e-4 * planck_radiance(560.0, 5000.0) * (1.0 - (-x).exp())
     })
     .sees(4e-3)
+}
+
+/// A plate below a ball lamp of which a black disk hides all but the rim, as in an annular eclipse.
+fn eclipse(how: &'static str) -> Truth {
+    const DISTANCE_M: f64 = 2.0;
+    const DISK_M: f64 = 0.5;
+    /// Of the lamp's solid angle.
+    const SEEN: f64 = 0.04;
+    let lamp = (1.0 - 1.0 / (DISTANCE_M * DISTANCE_M)).sqrt();
+    let hidden = 1.0 - (1.0 - SEEN) * (1.0 - lamp);
+    let irradiance = |cosine: f64| PI * (1.0 - cosine * cosine);
+    let scene = Scene::light_meter()
+        .lamp(sphere([0.0, 0.0, DISTANCE_M], 1.0), black(), 1.0, "front")
+        .object(disk([0.0, 0.0, DISK_M], [0.0, 0.0, 1.0], DISK_M * hidden.acos().tan()), black())
+        .light_sampling(how)
+        .spp(4096);
+    Truth::new(
+        format!("rim-of-a-ball-lamp-around-a-disk-by-{how}"),
+        &scene,
+        shown(irradiance(lamp) - irradiance(hidden)),
+        "(ρ/π) πL (sin²α − sin²β), sin α = ½, 1 − cos β = 0.96 (1 − cos α)",
+    )
+    .because(
+        "From straight below, ball and disk fill round cones about the same axis, and a cone of half angle α brings πL sin²α. The ring between \
+         them has a twenty-fifth of the ball's solid angle.",
+    )
+    .confirmed("rings of directions", 1e-8, move || {
+        let (from, to) = (hidden.acos(), lamp.acos());
+        let rings = 1000;
+        let step = (to - from) / f64::from(rings);
+        let ring = |k: u32| PI * (2.0 * (from + step * (f64::from(k) + 0.5))).sin();
+        shown((0..rings).map(ring).sum::<f64>() * step)
+    })
+    .or_else("the rim of the ball is never found", 0.0)
+    .or_else("the disk hides nothing", shown(irradiance(lamp)))
+    .or_else("light of the rim arrives as that of the middle would", shown(2.0 * PI * SEEN * (1.0 - lamp)))
+    .sees(0.02)
 }

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use serde_json::{Value, json};
 
 use super::media::{boundary, isotropic, medium};
-use super::scene::{Scene, block, glass, sphere, triangular_prism};
+use super::scene::{Scene, block, glass, mirror, parallelogram, sphere, triangular_prism};
 use super::{Claim, Truth};
 use crate::laws::fresnel_exact;
 use crate::quadrature::interval;
@@ -29,7 +29,9 @@ struct Lamp {
     lit: [f64; 2],
     /// A body of glass that the light goes through first, before it comes to a ball of fog.
     through: Option<Value>,
-    /// Another lamp, which does not light the ray.
+    /// A mirror that hands its light on, where the glass hands on that of the other lamp.
+    by: Option<Value>,
+    /// Another lamp.
     aside: Option<Value>,
 }
 
@@ -77,9 +79,15 @@ impl Lamp {
             Some(shape) => scene
                 .object(shape.clone(), glass(INDEX))
                 .thing(json!({ "shape": sphere([0.0; 3], BALL_M), "material": boundary(&fog) }))
-                .depth(4)
+                .depth(if self.by.is_some() { 3 } else { 4 })
                 .film(8, 8),
             None => scene.whole("medium", fog).depth(2),
+        };
+        let scene = match &self.by {
+            Some(mirror) => {
+                scene.thing(mirror.clone()).set("integrator", "light_tracing", json!("never")).film(16, 16).spp(1024)
+            }
+            None => scene,
         };
         let scene = match &self.aside {
             Some(lamp) => scene.light(lamp.clone()),
@@ -131,7 +139,7 @@ fn beam(name: &'static str, position: Vec3, axis: Vec3, [radius, half_angle_deg]
     });
     // Across the axis of an even beam, exactly; of a Gaussian one, as far as there is anything.
     let lit = if gaussian { [-2.5, 2.5] } else { [-radius, radius] };
-    Lamp { name, form, brings: Box::new(brings), lit, through: None, aside: None }
+    Lamp { name, form, brings: Box::new(brings), lit, through: None, by: None, aside: None }
 }
 
 fn spot() -> Lamp {
@@ -147,7 +155,15 @@ fn spot() -> Lamp {
     let form = json!({
         "type": "spot", "position_m": position, "direction": axis, "inner_half_angle_deg": 8, "half_angle_deg": 20, "intensity": 5,
     });
-    Lamp { name: "fog-in-a-spot", form, brings: Box::new(brings), lit: [-1.2, 1.4], through: None, aside: None }
+    Lamp {
+        name: "fog-in-a-spot",
+        form,
+        brings: Box::new(brings),
+        lit: [-1.2, 1.4],
+        through: None,
+        by: None,
+        aside: None,
+    }
 }
 
 /// A gradient that a projector throws into the fog.
@@ -179,7 +195,15 @@ fn projector() -> Lamp {
             "horizontal_fov_deg": 2.0 * across.atan().to_degrees(), "aspect": across / height,
         },
     });
-    Lamp { name: "fog-in-the-light-of-a-projector", form, brings: Box::new(brings), lit, through: None, aside: None }
+    Lamp {
+        name: "fog-in-the-light-of-a-projector",
+        form,
+        brings: Box::new(brings),
+        lit,
+        through: None,
+        by: None,
+        aside: None,
+    }
 }
 
 /// Radius of the beams that go through glass, and its index.
@@ -196,6 +220,7 @@ fn behind(name: &'static str, shape: Value, [position, axis]: [Vec3; 2], share: 
         brings: Box::new(move |[_, _, z]| [brought, (BALL_M * BALL_M - z * z).sqrt()]),
         lit: [-RADIUS_M, RADIUS_M],
         through: Some(shape),
+        by: None,
         aside: None,
     }
 }
@@ -231,6 +256,28 @@ fn behind_glass() -> [Lamp; 3] {
     ]
 }
 
+/// A beam by way of a mirror, and as strong a one that a plate of glass reflects, from both sides along the eye's plane.
+fn by_a_mirror_and_by_glass() -> Truth {
+    let (sin, cos) = 70_f64.to_radians().sin_cos();
+    let share = fresnel_exact(cos, INDEX).reflectance();
+    // Both surfaces stand upright, 0.8 m from the ray, and are met at this height.
+    let (away, height) = (0.8, 0.8 * sin / cos);
+    let mirror = json!({
+        "shape": parallelogram([away, height - 0.4, -1.0], [0.0, 0.8, 0.0], [0.0, 0.0, 2.0]),
+        "material": mirror(share),
+    });
+    let plate = block([-away - 0.2, height - 0.4, -1.0], [-away, height + 0.4, 1.0]);
+    let from = |side: f64| [[side * (away - cos), height + sin, 0.0], [side * cos, -sin, 0.0]];
+    // The eye, the fog, the mirror or the glass, and the lamp.
+    let aside = behind("", plate.clone(), from(-1.0), share).form;
+    let lamp = behind("fog-by-a-mirror-and-by-glass-that-reflects", plate, from(1.0), 2.0 * share);
+    let value = lamp.seen(|_| 1.0);
+    let lamp = Lamp { by: Some(mirror), aside: Some(aside), ..lamp };
+    lamp.truth()
+        .or_else("the light of one of the two lamps alone", 0.5 * value)
+        .or_else("what the glass reflects counts twice", 1.5 * value)
+}
+
 pub(super) fn truths() -> Vec<Truth> {
     let [plate, beside, prism] = behind_glass();
     [
@@ -243,5 +290,7 @@ pub(super) fn truths() -> Vec<Truth> {
         prism,
     ]
     .map(Lamp::truth)
-    .into()
+    .into_iter()
+    .chain([by_a_mirror_and_by_glass()])
+    .collect()
 }

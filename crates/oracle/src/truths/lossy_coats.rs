@@ -5,8 +5,8 @@ use std::f64::consts::PI;
 use serde_json::{Value, json};
 
 use super::surfaces::{plate, thing};
-use super::{Claim, Truth, facets::direction, scene::Scene};
-use crate::laws::{Masking, beckmann_albedo, beckmann_mirrors, fresnel_exact};
+use super::{Claim, Truth, expectation::Expectation, facets::direction, rough_surfaces::by_midpoints, scene::Scene};
+use crate::laws::{Masking, anisotropic_ggx_mirrors, beckmann_albedo, beckmann_mirrors, fresnel_exact, ggx_albedo};
 use crate::quadrature::gauss_legendre_half;
 use crate::vector::{add, dot, normalize};
 
@@ -36,6 +36,7 @@ pub(super) fn truths() -> Vec<Truth> {
     for (internal_reflection, again) in [("coloured", RHO), ("uncoloured", 1.0)] {
         list.extend(pair(internal_reflection, again));
     }
+    list.push(nearly_straight_on());
     list
 }
 
@@ -56,7 +57,7 @@ fn by_slopes(eta: f64, mu: f64) -> [f64; 2] {
 }
 
 /// 2∫ f µ dµ of a smooth function; nodes crowd at grazing angles.
-fn mean(f: impl Fn(f64) -> f64) -> f64 {
+pub(super) fn mean(f: impl Fn(f64) -> f64) -> f64 {
     gauss_legendre_half(12).into_iter().map(|(x, weight)| weight * 4.0 * x.powi(3) * f(x * x)).sum()
 }
 
@@ -115,4 +116,54 @@ fn pair(internal_reflection: &str, again: f64) -> [Truth; 2] {
     .claims(Claim::AveragesPolarisation)
     .sees(2e-3);
     [under_a_sky, in_parallel_light]
+}
+
+/// A coat of a low index, under which light goes nearly straight on, and meets other facets from below as it would from above.
+fn nearly_straight_on() -> Truth {
+    const N: f64 = 1.1;
+    const ALPHA: f64 = 1.0;
+    let (o, i) = (direction(75.0, 0.0), direction(65.0, -90.0));
+    let coat =
+        json!({ "type": "plastic", "reflectance": RHO, "coat": N, "alpha": ALPHA, "multiple_scattering": "lost" });
+    let scene = Scene::orthographic(o.map(|v| 2.0 * v), [0.0; 3], 0.1)
+        .thing(thing(coat))
+        .directional_light(i.map(|v| -v), 1.0)
+        .film(16, 16)
+        .spp(64);
+    let reflectance = fresnel_exact(dot(o, normalize(add(o, i))), N).reflectance();
+    let mirrored = reflectance * anisotropic_ggx_mirrors([ALPHA; 2], o, i) * i[2];
+    let shows =
+        move |passed: f64, returned: f64| mirrored + passed * RHO / (N * N * (1.0 - RHO * returned)) * i[2] / PI;
+    let of = move |shares: &dyn Fn(f64, f64) -> [f64; 2]| {
+        shows(shares(N, o[2])[1] * shares(N, i[2])[1], mean(|mu| shares(1.0 / N, mu)[0]))
+    };
+    let by_facets = |eta: f64, mu: f64| {
+        let albedo = ggx_albedo(ALPHA, mu, Some(eta), Masking::Correlated);
+        [albedo.reflected, albedo.refracted]
+    };
+    let work_out = move || {
+        let value = of(&by_facets);
+        let enters = |mu: f64| 1.0 - by_facets(N, mu)[0];
+        let returned = mean(|mu| by_facets(1.0 / N, mu)[0]);
+        Expectation::new(value)
+            .allows(1e-3 * value, TABLES)
+            .or_else("what facets hide enters", shows(enters(o[2]) * enters(i[2]), returned))
+            .or_else("the coat reflects nothing", value - mirrored)
+    };
+    Truth::later(
+        "plastic-under-a-coat-of-a-low-index-that-hides-light",
+        &scene,
+        "cos θᵢ (R D G₂/(4 cos θₒ cos θᵢ) + T(µₒ) T(µᵢ) ρ/(π n²(1 − ρ rᵢ))), GGX of α = 1, 75° and 65°, n = 1.1, ρ = ½",
+        work_out,
+    )
+    .because(
+        "Nearly all light is refracted, by little. At a slant much of it meets other facets before it is through: T = ∫ (1 − R) D G₁G₁ (o·h)/cos θₒ dω_h \
+         is far below 1 − R. From below facets return rᵢ of diffuse light.",
+    )
+    .confirmed("reflected light by midpoints over directions, refracted light over normals", 5e-3, move || {
+        of(&|eta, mu| by_midpoints(ALPHA, eta, mu))
+    })
+    .claims(Claim::AveragesPolarisation)
+    .claims(Claim::CorrelatedMasking)
+    .sees(2e-3)
 }

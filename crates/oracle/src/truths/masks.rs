@@ -7,12 +7,14 @@ use serde_json::{Value, json};
 
 use super::{
     Claim, Truth,
-    scene::{PLATE_ALBEDO, Scene, black, block, lambert, level_square, mesh, parallelogram},
+    scene::{PLATE_ALBEDO, Scene, black, block, lambert, level_square, mesh, mirror, parallelogram},
 };
+use crate::vector::{add, scale, sub};
 
 pub(super) fn truths() -> Vec<Truth> {
     let mut list = coplanar();
     list.push(sliding());
+    list.push(veil_by_two_mirrors());
     list.extend(["mis", "light", "bsdf"].map(veiled_lamp));
     list.into_iter().map(|truth| truth.claims(Claim::Masks)).collect()
 }
@@ -119,5 +121,31 @@ fn veiled_lamp(how: &'static str) -> Truth {
         )
         .or_else("the sheet is not met", whole)
         .or_else("the lamp is not met", 0.0)
+        .sees(0.01)
+}
+
+/// A mirror of opacity ½ leads the view to a whole mirror, and this to a black sheet of opacity ½ before a lamp.
+fn veil_by_two_mirrors() -> Truth {
+    // Around a place, with its front to the left and up, or to the right and up.
+    let slanted = |center: [f64; 3], rises: f64| {
+        let (along, across) = ([0.4, 0.0, 0.4 * rises], [0.0, 0.4, 0.0]);
+        parallelogram(sub(center, scale(0.5, add(along, across))), along, across)
+    };
+    let scene = Scene::orthographic([0.0, 0.0, 1.0], [0.0; 3], 0.1)
+        .mask(slanted([0.0; 3], -1.0), mirror(1.0), 0.5)
+        .object(slanted([1.0, 0.0, 0.0], 1.0), mirror(1.0))
+        .mask(level_square([1.0, 0.0, 1.0], 0.3, false), black(), 0.5)
+        .lamp(level_square([1.0, 0.0, 2.0], 0.5, false), black(), 1.0, "front")
+        .film(16, 16)
+        .spp(256);
+    Truth::new("veil-by-a-veiled-mirror-and-another", &scene, 0.25, "½ · ½")
+        .because(
+            "The first mirror reflects half of the light, and the sheet lets half of that pass. What passes the first mirror meets nothing. One \
+             sheet does not know what another has done.",
+        )
+        .or_else("where the mirror reflects, the sheet always stops the light", 0.0)
+        .or_else("where the mirror reflects, the sheet never stops the light", 0.5)
+        .or_else("the mirror reflects all", 0.5)
+        .or_else("the sheet is not met", 0.5)
         .sees(0.01)
 }

@@ -6,10 +6,12 @@ use std::f64::consts::PI;
 use serde_json::{Value, json};
 
 use super::companions::{self, Light, ROLL_DEG};
-use super::scene::{Scene, black, disk, lambert, level_square, shown};
+use super::expectation::Expectation;
+use super::scene::{Scene, black, disk, lambert, level_square, shown, sphere};
 use super::{Claim, Truth};
 use crate::laws::fresnel_exact;
-use crate::quadrature::interval;
+use crate::quadrature::{Cone, directions, interval};
+use crate::vector::{length, scale};
 
 const INDEX: f64 = 1.5;
 /// Far enough that no light comes by way of an edge.
@@ -19,6 +21,7 @@ pub(super) fn truths() -> Vec<Truth> {
     let mut list = vec![
         three_panes_in_a_row(),
         disk_lamp(),
+        behind_one_and_behind_two(),
         lamp_at_a_point("never").claims(Claim::SpecularConnections),
         lamp_at_a_point("always").claims(Claim::SpecularConnections),
     ];
@@ -101,6 +104,50 @@ fn disk_lamp() -> Truth {
     .or_else("panes counted", 0.0)
     .or_else("no pane", shown(irradiance(|_| 1.0)))
     .sees(5e-3)
+}
+
+/// A small lamp behind a pane, and a wide one behind the same and another: as edges, the second pane would be one too many.
+fn behind_one_and_behind_two() -> Truth {
+    const HEIGHT_M: f64 = 1.5;
+    const WIDE_M: f64 = 0.6;
+    const SMALL_M: f64 = 0.05;
+    const BRIGHT: f64 = 100.0;
+    let small = [1.5, 0.0, HEIGHT_M];
+    let scene = Scene::light_meter()
+        .thing(pane(0.5, FAR_M))
+        .thing(pane(0.6, 0.4))
+        .lamp(disk([0.0, 0.0, HEIGHT_M], [0.0, 0.0, -1.0], WIDE_M), black(), 1.0, "front")
+        .lamp(sphere(small, SMALL_M), black(), BRIGHT, "front")
+        .set("integrator", "light_tracing", json!("never"));
+    let (distance, axis) = (length(small), scale(1.0 / length(small), small));
+    let cone = Cone::new(axis, (SMALL_M / distance).asin());
+    let of_small = move |transmittance: fn(f64) -> f64| {
+        BRIGHT * directions(|d| transmittance(d[2]) * d[2], cone, 1e-9, 100_000).value
+    };
+    let of_wide = |transmittance: fn(f64) -> f64, panes: i32| {
+        let of_ring = |theta: f64| transmittance(theta.cos()).powi(panes) * theta.cos() * theta.sin();
+        2.0 * PI * interval(of_ring, 0.0, (WIDE_M / HEIGHT_M).atan(), 1e-12).value
+    };
+    let work_out = move || {
+        let (small, wide) = (of_small(passes), of_wide(passes, 2));
+        Expectation::new(shown(small + wide))
+            .allows(1e-6, "the quadrature over the small lamp; and single precision")
+            .or_else("panes counted", shown(small))
+            .or_else("the wide lamp behind one pane", shown(small + of_wide(passes, 1)))
+            .or_else("no panes", shown(of_small(|_| 1.0) + of_wide(|_| 1.0, 0)))
+    };
+    Truth::later(
+        "lamps-behind-one-pane-and-behind-two-that-no-limit-counts",
+        &limited(scene, 3),
+        "(ρ/π) (L ∫ T cos θ dω + 2πL′ ∫ T² cos θ sin θ dθ), T = ½Σ (1 − R)/(1 + R)",
+        work_out,
+    )
+    .because("Two edges, to the plate and straight on to a lamp. What panes reflect to and fro takes two more, and the limit is one.")
+    .confirmed("the passes to and fro within the panes, and the small lamp as it is in its middle", 1e-3, move || {
+        let solid_angle = 2.0 * PI * cone.one_minus_cos;
+        shown(BRIGHT * passes_beam_by_beam(axis[2]) * axis[2] * solid_angle + of_wide(passes_beam_by_beam, 2))
+    })
+    .sees(0.01)
 }
 
 /// A lamp without area, searched for through the pane, or found from the lamp.

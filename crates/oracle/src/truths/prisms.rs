@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::{
     Claim, Truth,
-    scene::{Scene, black, parallelogram, sellmeier_glass, triangular_prism},
+    scene::{Scene, black, block, disk, parallelogram, sellmeier_glass, triangular_prism},
 };
 use crate::{
     laws::fresnel_exact,
@@ -144,6 +144,7 @@ pub(super) fn truths() -> Vec<Truth> {
         rainbow("rainbow-of-a-glass-by-the-fourth-power-of-the-wavelength", glass, fourth_power)
             .claims(Claim::WholeFormat),
     );
+    list.push(beyond_the_critical_angle_of_blue());
     list
 }
 
@@ -207,6 +208,67 @@ fn rainbow(name: &str, glass: Value, index: fn(f64) -> f64) -> Truth {
     .claims(Claim::AveragesPolarisation)
     .claims(Claim::Dispersion)
     .claims(Claim::PhotometricSensor)
+}
+
+/// An eye in a block of glass, and a lamp in it that its upper face mirrors. Total reflection begins in the blue.
+fn beyond_the_critical_angle_of_blue() -> Truth {
+    const TOTAL_FROM_NM: f64 = 480.0;
+    let index = |nm: f64| 1.4 + 0.05 / (1e-3 * nm).powi(2);
+    let sine = 1.0 / index(TOTAL_FROM_NM);
+    let cosine = (1.0 - sine * sine).sqrt();
+    let reflects = move |nm: f64| match nm > TOTAL_FROM_NM {
+        true => fresnel_exact(cosine, 1.0 / index(nm)).reflectance(),
+        false => 1.0,
+    };
+    let glass = json!({ "type": "dielectric", "interior": { "type": "cauchy", "a": 1.4, "b_um2": 0.05, "range_nm": [300, 900] } });
+    let scene = Scene::orthographic([-0.5 * sine, 0.0, -0.5 * cosine], [0.0; 3], 1e-3)
+        .object(block([-1.0, -1.0, -1.0], [1.0, 1.0, 0.0]), glass)
+        .lamp(disk([0.5 * sine, 0.0, -0.5 * cosine], [-sine, 0.0, cosine], 0.1), black(), 1.0, "front")
+        .film(16, 16)
+        .spp(256);
+    let over = |of: &dyn Fn(f64) -> f64| -> f64 {
+        let middles = (0..4700).map(|i| 360.0 + 0.1 * (f64::from(i) + 0.5));
+        middles.map(|nm| 0.1 * photometric_weight(nm) * of(nm)).sum()
+    };
+    // Four wavelengths a quarter of an even distribution apart. Each is the first as often.
+    let of_four = |nm: f64, relative: &dyn Fn(f64, f64) -> f64| {
+        let four = [0.0, 117.5, 235.0, 352.5].map(|step| reflects(360.0 + (nm - 360.0 + step) % 470.0));
+        let of_first =
+            |first: f64| first * relative(four[0], first) / four.map(|r| relative(r, first)).iter().sum::<f64>();
+        four.map(of_first).iter().sum::<f64>()
+    };
+    let (value, capped) = (over(&reflects), over(&|nm| of_four(nm, &|own, first| (own / first).min(1.0))));
+    Truth::new(
+        "eye-in-glass-beyond-the-critical-angle-of-blue",
+        &scene,
+        value,
+        "∫ȳR dλ/∫ȳ dλ, R = (R_s + R_p)/2, and 1 up to 480 nm; n = 1.4 + 0.05 µm²/λ²",
+    )
+    .because(
+        "Each wavelength is reflected by its own index. All go the same way, so that a path may hold several: blue as a whole, of green a fourth, of \
+         red less.",
+    )
+    .confirmed("angles of refraction, and Simpson's rule over each nanometre", 1e-4, move || {
+        let incidence = cosine.acos();
+        let of = |nm: f64| {
+            let refracted = index(nm) * sine;
+            if refracted >= 1.0 {
+                return 1.0;
+            }
+            let (less, more) = (incidence - refracted.asin(), incidence + refracted.asin());
+            0.5 * ((less.sin() / more.sin()).powi(2) + (less.tan() / more.tan()).powi(2))
+        };
+        let f = |nm: f64| photometric_weight(nm) * of(nm);
+        (360..830).map(f64::from).map(|nm| (f(nm) + 4.0 * f(nm + 0.5) + f(nm + 1.0)) / 6.0).sum()
+    })
+    .or_else("no wavelength weighed above the one that chooses (four, drawn evenly)", capped)
+    .or_else("all wavelengths reflected as the one that chooses", over(&|nm| of_four(nm, &|_, _| 1.0)))
+    .or_else("one index for all wavelengths, that of the d line", reflects(587.5618))
+    .claims(Claim::AveragesPolarisation)
+    .claims(Claim::Dispersion)
+    .claims(Claim::PhotometricSensor)
+    .claims(Claim::WholeFormat)
+    .sees(0.01)
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ use super::{
     measured_files::{Azimuths, Made},
     photometric_weight,
     principled_lobes::{DIFFUSE, Surface, direction, grazing},
-    scene::{Scene, black, disk, lambert, level_square, mirror, sphere},
+    scene::{Scene, black, brushed_metal, disk, lambert, level_square, mirror, sphere},
     tiles::{mean, row_of, with},
 };
 use crate::{
@@ -19,7 +19,18 @@ use crate::{
 };
 
 pub(super) fn truths() -> Vec<Truth> {
-    vec![brushed_coat(), principled(), measured(), dye(), disc(), cloth(), sheet(true), sheet(false), walls()]
+    vec![
+        brushed_coat(),
+        mirrored_grain(),
+        principled(),
+        measured(),
+        dye(),
+        disc(),
+        cloth(),
+        sheet(true),
+        sheet(false),
+        walls(),
+    ]
 }
 
 const UP: Vec3 = [0.0, 0.0, 1.0];
@@ -88,6 +99,40 @@ fn brushed_coat() -> Truth {
     .claims(Claim::AnisotropicFacets)
     .claims(Claim::CorrelatedMasking)
     .claims(Claim::AveragesPolarisation)
+    .sees(2e-3)
+}
+
+/// Brushed metal where v grows to the right of u, as on the other half of a mirrored model.
+fn mirrored_grain() -> Truth {
+    const WIDTHS: [f64; 2] = [0.5, 0.1];
+    const TURN_DEG: f64 = 35.0;
+    let (o, i) = (direction(45.0, 10.0), direction(50.0, 165.0));
+    let sheet = json!({
+        "type": "mesh", "vertices_m": [[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], "triangles": [[0, 1, 2], [0, 2, 3]],
+        "uvs": [[0, 1], [1, 1], [1, 0], [0, 0]],
+    });
+    let scene = Scene::orthographic(scale(2.0, o), [0.0; 3], 0.1)
+        .thing(json!({ "shape": sheet, "material": brushed_metal(WIDTHS, TURN_DEG, false) }))
+        .film(16, 16);
+    let of = move |widths: [f64; 2], turn_deg: f64| {
+        anisotropic_ggx_mirrors(widths, turned(o, turn_deg), turned(i, turn_deg)) * i[2]
+    };
+    Truth::new(
+        "brushed-metal-of-mirrored-coordinates-in-the-sun",
+        &lit(scene, i),
+        of(WIDTHS, -TURN_DEG),
+        "D G₂/(4 cos θ_o), α = ½ along a line 35° from u toward v, which is to its right, 0.1 across it",
+    )
+    .because("A grain is turned from growing u toward growing v. Seen from the front v grows to the right of u, so it is turned clockwise.")
+    .confirmed("slopes of facets by tangents", 1e-9, move || {
+        let facets = density(slopes(o, i, -TURN_DEG), WIDTHS);
+        facets / ((1.0 + hidden(o, -TURN_DEG, WIDTHS) + hidden(i, -TURN_DEG, WIDTHS)) * 4.0 * o[2])
+    })
+    .or_else("turned as if v grew to the left", of(WIDTHS, TURN_DEG))
+    .or_else("the grain not turned", of(WIDTHS, 0.0))
+    .or_else("the widths exchanged", of([WIDTHS[1], WIDTHS[0]], -TURN_DEG))
+    .claims(Claim::AnisotropicFacets)
+    .claims(Claim::CorrelatedMasking)
     .sees(2e-3)
 }
 
