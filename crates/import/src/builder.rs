@@ -37,6 +37,17 @@ fn how(loss: Loss) -> &'static str {
     }
 }
 
+/// Whether it is or has a part that states the media on both of its sides.
+fn has_dielectric(value: &Value) -> bool {
+    match value {
+        Value::Object(map) => {
+            map.get("type").is_some_and(|kind| kind == "dielectric") || map.values().any(has_dielectric)
+        }
+        Value::Array(list) => list.iter().any(has_dielectric),
+        _ => false,
+    }
+}
+
 /// A scene that is being made.
 pub(crate) struct Builder<'a> {
     pub(crate) near: &'a dyn Fn(&str) -> Result<Vec<u8>, String>,
@@ -56,6 +67,8 @@ pub(crate) struct Builder<'a> {
     pub(crate) film: Value,
     /// What fills the space outside of all bodies.
     pub(crate) medium: Option<Value>,
+    /// Media that end at the boundary of a body, with where that is stated.
+    bounded: Vec<(Value, String)>,
     pub(crate) integrator: Map<String, Value>,
     pub(crate) files: Vec<NamedFile>,
     /// The names of those that are meshes of which no triangle has an area.
@@ -112,6 +125,7 @@ impl<'a> Builder<'a> {
             shutter_s: None,
             film: json!({ "width": 1280, "height": 720 }),
             medium: None,
+            bounded: Vec::new(),
             integrator: Map::new(),
             files: Vec::new(),
             flat_meshes: HashSet::new(),
@@ -213,6 +227,26 @@ impl<'a> Builder<'a> {
         }
     }
 
+    /// Says that a medium fills a body whose boundary is no surface, and is not outside of it.
+    pub(crate) fn bound(&mut self, medium: &Value, place: &str) {
+        if !self.bounded.iter().any(|(known, _)| known == medium) {
+            self.bounded.push((medium.clone(), place.to_owned()));
+        }
+    }
+
+    /// A medium that is said to be around the camera, and to end at the boundary of a body, fills that body alone: the camera is inside.
+    fn end_medium(&mut self) {
+        let Some((_, place)) = self.bounded.iter().find(|(medium, _)| Some(medium) == self.medium.as_ref()) else {
+            return;
+        };
+        if self.materials.values().chain(&self.objects).chain(self.groups.values()).any(has_dielectric) {
+            let what = "the medium around the camera ends here; beside glass it fills all space";
+            self.approximate(&place.clone(), what);
+        } else {
+            self.medium = None;
+        }
+    }
+
     /// Counts a copy of something toward what a scene can hold.
     ///
     /// # Errors
@@ -247,6 +281,7 @@ impl<'a> Builder<'a> {
     pub(crate) fn finish(mut self, source: &str) -> Result<Imported, String> {
         let Some([low, high]) = self.bounds else { return Err(self.nothing_to_see()) };
         let taken_over = self.taken_over();
+        self.end_medium();
         let mut added = std::mem::take(&mut self.added);
         if self.uncounted > 0 {
             let what = format!("{} more things are not listed", self.uncounted);

@@ -100,6 +100,9 @@ impl Reading<'_, '_> {
             let mut filled = own.clone();
             if fill(&mut filled, &mut opacity, detail.contains_key("opacity_image"), &medium) {
                 self.builder.spend(&filled, place)?;
+                if filled["type"] == "boundary" && self.state.outside.as_ref() != Some(&medium) {
+                    self.builder.bound(&medium, place);
+                }
                 material = filled;
             }
         }

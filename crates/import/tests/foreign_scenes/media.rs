@@ -18,6 +18,20 @@ fn near(found: [f64; 2], known: [f64; 2]) {
     assert!((0..2).all(|k| (found[k] - known[k]).abs() < 1e-12), "{found:?} is not {known:?}");
 }
 
+/// What is around the camera ends at a boundary that has it inside and nothing outside. Other surfaces in it do not matter.
+#[test]
+fn fog_of_pbrt_around_the_camera_ends_at_the_boundary_of_its_body() {
+    let of = |outside: &str| {
+        let text = format!(
+            "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"float sigma_a\" 1\nMediumInterface \"\" \"fog\"\n\
+             Camera \"perspective\"\nWorldBegin\nShape \"sphere\" \"float radius\" 0.1\n\
+             MediumInterface \"fog\" \"{outside}\"\nMaterial \"interface\"\nShape \"sphere\""
+        );
+        scene(&imported("pbrt", &text)).medium.is_some()
+    };
+    assert_eq!(["", "fog"].map(of), [false, true]);
+}
+
 #[test]
 fn media_of_mitsuba_arrive() {
     let text = r#"<scene version="3.0.0">

@@ -25,6 +25,22 @@ fn extinction(scene: &Scene, object: usize) -> f64 {
     medium.as_ref().map_or(0.0, |medium| medium.absorption.eval(500.0))
 }
 
+/// The camera stands in a ball of haze, which ends where the ball does.
+#[test]
+fn haze_around_the_camera_ends_at_the_boundary_of_its_body() {
+    let inside = r#"<ref id="haze"/>"#;
+    let (scene, lines) = with_haze("volpath", inside, FOG);
+    assert!(scene.medium.is_none() && lines.is_empty(), "{lines:?}");
+    assert_eq!(extinction(&scene, 0), 0.5);
+    // Without such a body it has no end, and glass states what is on both of its sides.
+    let plate = r#"<shape type="rectangle"><bsdf type="diffuse"/></shape>"#;
+    assert!(with_haze("volpath", inside, plate).0.medium.is_some());
+    let glass = format!(r#"{FOG}<shape type="sphere"><float name="radius" value="0.5"/>{GLASS}</shape>"#);
+    let (scene, lines) = with_haze("volpath", inside, &glass);
+    assert!(scene.medium.is_some());
+    assert!(lines.iter().any(|line| line.contains("beside glass it fills all space")), "{lines:?}");
+}
+
 #[test]
 fn what_is_outside_of_a_body_fills_the_body_around_it() {
     let inner = |bsdf: &str| {
