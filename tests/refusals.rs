@@ -93,6 +93,26 @@ fn mistakes_in_usage_outputs_and_scene_are_all_shown_by_one_run() {
     ]);
 }
 
+/// Outputs do not take the place of the scene, nor of an image that it shows, by whatever name.
+#[test]
+fn an_output_that_the_scene_is_read_from_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    image::RgbImage::from_pixel(2, 2, image::Rgb([9, 9, 9])).save(at("sky.png")).unwrap();
+    let scene = r#"{ "etalon": 1, "film": { "width": 4, "height": 4 }, "integrator": { "spp": 4 },
+        "camera": { "type": "perspective", "position_m": [0, 0, 4], "look_at_m": [0, 0, 0], "vertical_fov_deg": 20 },
+        "objects": [{ "shape": { "type": "sphere", "radius_m": 1 }, "material": { "type": "lambert", "reflectance": { "type": "image", "file": "sky.png" } } }],
+        "lights": [{ "type": "environment", "radiance": 1 }] }"#;
+    std::fs::write(at("scene.json"), scene).unwrap();
+    let before = std::fs::read(at("sky.png")).unwrap();
+    std::fs::create_dir(at("in")).unwrap();
+    for output in [at("sky.png"), at("in/../sky.png")] {
+        etalon_line("render {} -o {}", [&at("scene.json"), &output]).expect(2).says(["is read from", "sky.png"]);
+    }
+    assert_eq!(std::fs::read(at("sky.png")).unwrap(), before);
+    etalon_line("render {} -o {} -q", [&at("scene.json"), &at("other.png")]).expect(0);
+}
+
 #[test]
 fn what_lies_outside_the_picture_is_refused() {
     let folder = tempfile::tempdir().unwrap();

@@ -86,6 +86,8 @@ fn a_signal_ends_a_render_with_what_there_is_and_it_can_be_resumed() {
         let mut child = command(words(&line, [&scene("cornell.json"), &exr])).spawn().unwrap();
         wait_for(&checkpoint, &mut child);
         std::thread::sleep(Duration::from_millis(300));
+        // Programs that end others may send it twice.
+        signal(&child, name);
         signal(&child, name);
         let output = child.wait_with_output().unwrap();
         let said = String::from_utf8(output.stderr).unwrap();
@@ -123,6 +125,25 @@ fn a_signal_ends_a_render_with_what_there_is_and_it_can_be_resumed() {
         fs::write(&checkpoint, &bytes[..middle]).unwrap();
         etalon_line(&format!("{line} --resume"), [&scene("cornell.json"), &exr]).expect(1).says(["ends early"]);
     }
+}
+
+/// Minutes of one tile: what is under way does not end soon.
+#[test]
+fn the_same_signal_again_after_a_while_ends_a_render_at_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let (exr, checkpoint) = (folder.path().join("x.exr"), folder.path().join("x.exr.checkpoint"));
+    let line = format!("render {{}} -o {{}} {LONG} --json --checkpoint 0.05s");
+    let mut child = command(words(&line, [&scene("cornell.json"), &exr])).spawn().unwrap();
+    wait_for(&checkpoint, &mut child);
+    signal(&child, "INT");
+    std::thread::sleep(Duration::from_millis(700));
+    // It may have ended by the first alone.
+    if child.try_wait().unwrap().is_none() {
+        signal(&child, "INT");
+    }
+    let start = Instant::now();
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    assert!(start.elapsed() < Duration::from_secs(20), "{:?}", start.elapsed());
 }
 
 #[test]

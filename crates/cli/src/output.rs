@@ -103,6 +103,23 @@ pub(crate) fn check_own(path: &Path) -> Result<(), Failure> {
     )))
 }
 
+/// Refuses outputs that would take the place of what the scene is read from: its own file, and those that it names.
+pub(crate) fn check_inputs(outputs: &[Output], scene: &Path, files: &[String], failure: &mut Failure) {
+    let folder = if is_standard_input(scene) { Path::new("") } else { scene.parent().unwrap_or(Path::new("")) };
+    let inputs = files.iter().map(|name| folder.join(name)).chain([scene.to_owned()]);
+    let inputs: Vec<PathBuf> = inputs.filter_map(|path| path.canonicalize().ok()).collect();
+    for output in outputs {
+        if output.path.canonicalize().is_ok_and(|path| inputs.contains(&path)) {
+            failure.add(Failure::input(miette!(
+                code = "output-is-input",
+                help = "name another file",
+                "the scene is read from `{}`, which the output would replace",
+                output.path.display()
+            )));
+        }
+    }
+}
+
 /// Understands the names of the outputs, and finds out whether they can be written, before anything is computed.
 /// Everything that is wrong with any of them goes into `failure`.
 pub(crate) fn plan(paths: &[PathBuf], failure: &mut Failure) -> Vec<Output> {

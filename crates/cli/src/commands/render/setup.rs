@@ -78,6 +78,7 @@ pub(super) fn make_ready(
     earlier: Option<Prepared>,
     mut failure: Failure,
 ) -> Result<Job, Failure> {
+    output::check_inputs(outputs, &args.scene, &loaded.files, &mut failure);
     let stokes = loaded.scene.film.stokes || args.overrides.polarised();
     preflight::check_memory(&loaded.scene, stokes, args.threads.unwrap_or(1) as usize, &mut failure);
     let film = &loaded.scene.film;
