@@ -241,7 +241,7 @@ impl<'a> Builder<'a> {
         };
         if self.materials.values().chain(&self.objects).chain(self.groups.values()).any(has_dielectric) {
             let what = "the medium around the camera ends here; beside glass it fills all space";
-            self.approximate(&place.clone(), what);
+            self.approximate(place.clone(), what);
         } else {
             self.medium = None;
         }
