@@ -53,6 +53,7 @@ fn materials_and_spectra() {
             "clouds",
             "haze",
             "pot",
+            "playing card",
             "objects[4].material"
         ]
     );
@@ -170,6 +171,8 @@ fn materials_and_spectra() {
     };
     assert_eq!(kind(&scene, "marker"), &marker);
     let clay = MaterialKind::OrenNayar { reflectance: Spectrum::Constant(0.5).into(), roughness: 0.4 };
+    // Seen from its front, what is made for the back.
+    assert_eq!(kind(&scene, "playing card"), &MaterialKind::one_sided(clay.clone(), Side::Front));
     assert_eq!(kind(&scene, "clay"), &MaterialKind::one_sided(clay, Side::Back));
     let [reflectance, transmittance] = [0.25, 0.625].map(|share| Spectrum::Constant(share).into());
     assert_eq!(kind(&scene, "leaf"), &MaterialKind::Translucent { reflectance, transmittance });

@@ -112,7 +112,7 @@ fn objects_and_lights() {
     let uvs = vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.5]];
     let colours = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.5, 0.25, 1.0]];
     assert_eq!(pyramid.shape, Shape::Mesh(Arc::new(Mesh { vertices, triangles, normals, uvs, colours })));
-    assert_eq!((pyramid.name.as_str(), pyramid.material), ("pyramid", 40));
+    assert_eq!((pyramid.name.as_str(), pyramid.material), ("pyramid", 41));
     // By hand: (x, y, z) → (2x, −2y, 6z) → a quarter turn: (2y, 2x, 6z) → moved → x and y swapped, moved.
     let linear = [[2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 6.0]];
     assert_eq!(pyramid.transform, Transform { linear, translation_m: [25.0, 16.0, 37.0] });
