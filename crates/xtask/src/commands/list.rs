@@ -172,6 +172,13 @@ pub(super) const COMMANDS: &[(&str, &[Named])] = &[
                 Script("tests/false-alarms.py"),
             ),
             named(
+                "resolution",
+                "[--words WORD …] [--sees PERCENT] [--hours H]",
+                "etalon verify of one truth after another until each shows a bias of 0.2 %; it goes on where it stopped",
+                "12 h for media",
+                Script("tests/resolution.py"),
+            ),
+            named(
                 "faults",
                 "list | check | build | run [NAME …] | table",
                 "wrong expressions of tests/faults, one at a time: whether verify or the tests notice",
