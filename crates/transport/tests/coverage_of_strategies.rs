@@ -14,7 +14,7 @@ fn floor(objects: &[Value], lights: &Value, integrator: &Value) -> Scene {
     floor_within(14.0, objects, lights, integrator)
 }
 
-/// The same, seen within so many degrees.
+/// The same, with another vertical field of view.
 fn floor_within(degrees: f64, objects: &[Value], lights: &Value, integrator: &Value) -> Scene {
     let mut list = vec![json!({"name": "floor", "material": "floor",
         "shape": {"type": "disk", "center_m": [0, 0, 0], "normal": [0, 1, 0], "radius_m": 4}})];

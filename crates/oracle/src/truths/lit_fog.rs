@@ -29,7 +29,7 @@ struct Lamp {
     lit: [f64; 2],
     /// A body of glass that the light goes through first, before it comes to a ball of fog.
     through: Option<Value>,
-    /// A mirror that hands its light on, where the glass hands on that of the other lamp.
+    /// A mirror that reflects its light to the fog. The glass then reflects that of the other lamp.
     by: Option<Value>,
     /// Another lamp.
     aside: Option<Value>,

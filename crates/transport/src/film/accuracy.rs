@@ -223,11 +223,11 @@ impl ErrorSum {
         square.max(0.25 * self.normal_uncertainty / (v * v)).sqrt()
     }
 
-    /// 95 % confidence interval of E where these are all pixels of the picture, of which up to `correlated` have a common part of error. 0 to infinity where
-    /// it is unknown.
+    /// 95 % confidence interval of E where these are all pixels of the picture. Up to `correlated` of them have a common part of error. The interval is 0 to
+    /// infinity where it is unknown.
     ///
-    /// ln E is, to first order, a sum over pixels: among B of them with a common part of error its variance is at most B times that of independent ones
-    /// (Cauchy and Schwarz), as if there were B times fewer.
+    /// ln E is, to first order, a sum over pixels. If B of them have a common part of error, its variance is at most B times that of independent ones (Cauchy
+    /// and Schwarz). That is the variance of a picture with B times fewer independent pixels.
     pub fn interval(&self, correlated: u32) -> [f64; 2] {
         let together = f64::from(correlated);
         let relative_rmse = self.relative_rmse().unwrap_or(f64::INFINITY);

@@ -14,18 +14,6 @@ use crate::model::{MaterialKind, NumberTexture};
 /// file, and an image of roughness makes up to 97.
 pub const MOST_BLEND_PARTS: usize = 8 * MOST_WIDTHS;
 
-/// Materials that are no blends in a material.
-fn parts(kind: &MaterialKind) -> usize {
-    match kind {
-        MaterialKind::Blend { parts: several, .. } => several.iter().map(|(_, part)| parts(part)).sum(),
-        MaterialKind::TwoSided { front, back } => {
-            [front, back].into_iter().filter(|side| ***side != MaterialKind::Black).map(|side| parts(side)).sum()
-        }
-        MaterialKind::Tinted { kind, .. } => parts(kind),
-        _ => 1,
-    }
-}
-
 /// Named materials that a blend or a filled body may be made of: those that stand before it, so that none is made of itself.
 #[derive(Debug)]
 pub(crate) struct Before<'m> {
@@ -102,7 +90,7 @@ pub(super) fn blend<'f>(
         return None;
     }
     let kind = MaterialKind::blend(first, second, by);
-    let count = parts(&kind);
+    let count = kind.parts().len();
     if count > MOST_BLEND_PARTS {
         let message = format!("the blend has {count} materials, counting those of blends inside it");
         reader.error_hint(Code::OutOfRange, blend.at.head(), message, format!("at most {MOST_BLEND_PARTS}"));

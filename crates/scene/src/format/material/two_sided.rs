@@ -7,9 +7,12 @@ use crate::files::Files;
 use crate::json::{Code, Reader};
 use crate::model::MaterialKind;
 
-/// What a material is on the side that it is made for.
+/// What a material, and each part of a blend, is on the side that it is made for.
 fn shown(kind: MaterialKind) -> MaterialKind {
     match kind {
+        MaterialKind::Blend { parts, by } => {
+            MaterialKind::Blend { parts: parts.into_iter().map(|(place, part)| (place, shown(part))).collect(), by }
+        }
         MaterialKind::TwoSided { front, back } if *back == MaterialKind::Black => *front,
         MaterialKind::TwoSided { front, back } if *front == MaterialKind::Black => *back,
         kind => kind,
@@ -102,6 +105,13 @@ mod tests {
         let own = r#"{ "type": "mirror", "reflectance": 0.9 }"#;
         let expected = MaterialKind::TwoSided { front: mirror(), back: paint() };
         assert_eq!(material(&format!(r#""front": {own}, "back": "paint""#)), Ok(expected));
+        // So is a part of a blend.
+        let mixed = |share| format!(r#"{{ "type": "blend", "first": "paint", "second": "paint", "weight": {share} }}"#);
+        let Ok(MaterialKind::TwoSided { back, .. }) = material(&format!(r#""front": {own}, "back": {}"#, mixed(0.5)))
+        else {
+            panic!("two sides")
+        };
+        assert_eq!(*back, MaterialKind::blend(*paint(), *paint(), 0.5));
         // Black on its back, it is shown by its front.
         let expected = MaterialKind::TwoSided { front: paint(), back: mirror() };
         assert_eq!(material(&format!(r#""front": "both", "back": {own}"#)), Ok(expected));

@@ -10,8 +10,8 @@ fn student_95(freedom: f64) -> f64 {
     (freedom * ((Z_95 * scale).powi(2) / freedom).exp_m1()).sqrt()
 }
 
-/// The interval of a positive quantity whose logarithm has an estimated standard error with so many degrees of freedom. 0 to infinity where the
-/// quantity or the error is infinite, which stands for unknown.
+/// The interval of a positive quantity. `relative_error` is the standard error of its logarithm, estimated with this many degrees of freedom. The interval
+/// is 0 to infinity where the quantity or the error is infinite, which stands for unknown.
 pub(super) fn of_positive(value: f64, relative_error: f64, freedom: f64) -> [f64; 2] {
     let factor = match relative_error {
         0.0 => 1.0,
@@ -20,8 +20,8 @@ pub(super) fn of_positive(value: f64, relative_error: f64, freedom: f64) -> [f64
     if value.is_finite() && factor.is_finite() { [value / factor, value * factor] } else { [0.0, f64::INFINITY] }
 }
 
-/// The interval of a mean with an estimated variance and third cumulant. Light that is found rarely makes a mean that is mostly too small, and then seems
-/// to be known well. The cubic transformation of Hall takes this out of Student's t (Hall 1992, *On the Removal of Skewness by Transformation*).
+/// The interval of a mean with an estimated variance and third cumulant. If light is found rarely, the mean is too small in most pictures, and its estimated
+/// error is too small as well. A cubic transformation corrects Student's t for this (Hall 1992, *On the Removal of Skewness by Transformation*).
 pub(super) fn of_mean(mean: f64, variance: f64, third_cumulant: f64, freedom: f64) -> [f64; 2] {
     let error = variance.sqrt();
     if error == 0.0 {
