@@ -94,8 +94,8 @@ impl<'a> Walk<'a, '_, '_> {
             if is_sheet(&material) {
                 self.builder.leave_out(place, "the medium of a polarising sheet is left out");
             } else if fill(&mut material, &mut look.opacity, look.detail.contains_key("opacity_image"), &medium) {
-                let ends = |inside| outside.is_none_or(|outside| !std::ptr::eq(outside, inside));
-                if material["type"] == "boundary" && inside.is_some_and(ends) {
+                let is_outside = |inside| outside.is_some_and(|outside| std::ptr::eq(outside, inside));
+                if material["type"] == "boundary" && inside.is_some_and(|inside| !is_outside(inside)) {
                     self.builder.bound(&medium, place);
                 }
                 if material["type"] == "boundary" && self.nested {
