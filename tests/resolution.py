@@ -6,7 +6,7 @@
 `--words` choose truths as `etalon verify` does. All media take about twelve hours of two cores. What a truth showed is a line of FILE, written when it is done.
 So a run that was interrupted goes on with the next truth. A line counts for the program that wrote it alone: keep a copy of it. After `--hours` no further truth is begun.
 
-It prints the truths that show less than was asked for. The exit status is 1 if there are any, if a truth fails, or if some have not been read.
+It prints the truths that are coarser than was asked for. The exit status is 1 if there are any, if a truth fails, or if some have not been read.
 """
 
 import argparse
@@ -73,7 +73,7 @@ def main():
     coarser = [row for row in rows if shows(row) > asked]
     failed = [row for row in rows if not row["pass"]]
     hours = sum(row["seconds"] for row in rows) / 3600
-    print(f"{len(rows)} of {len(names)} truths read in {hours:.1f} h; {len(coarser)} show less than {args.sees}, {len(failed)} failed")
+    print(f"{len(rows)} of {len(names)} truths read in {hours:.1f} h; {len(coarser)} are coarser than {args.sees}, {len(failed)} failed")
     for row in coarser:
         print(f"  {row['name']}: {shows(row):.2%} after {row['seconds']:.0f} s")
     for row in failed:
