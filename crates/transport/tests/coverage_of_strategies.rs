@@ -48,14 +48,14 @@ fn ball(center: [f64; 3], radius: f64) -> Value {
     json!({"type": "sphere", "center_m": center, "radius_m": radius})
 }
 
-/// What a report does not flag must hold: 93 % of the intervals of pixels, and of pictures' means and errors less what 200 renders leave open, which is 1.8 % a standard error.
-/// Pixels' shares are known to 0.3 %.
+/// No picture is flagged, and 93 % of the intervals of means and errors hold, less three standard errors of 1.8 % that 200 renders leave open. The intervals of pixels
+/// hold as many if they raise no flag either; their share is known to 0.3 %.
 fn check(name: &str, seen: &Coverage) {
-    let picture = seen.tail_index > HEAVY_TAIL;
-    let pixels = picture || seen.pixel_tail_index > HEAVY_PIXEL_TAIL;
-    assert!(pixels || (0.925..=0.975).contains(&seen.pixels), "{name}: {seen:?}");
-    assert!(picture || seen.pictures.min(seen.errors) > 0.93 - 3.0 * 0.018, "{name}: {seen:?}");
-    assert!(picture || (seen.stated / seen.actual - 1.0).abs() < 0.06, "{name}: {seen:?}");
+    assert!(seen.tail_index < HEAVY_TAIL, "{name}: {seen:?}");
+    assert!(seen.pictures.min(seen.errors) > 0.93 - 3.0 * 0.018, "{name}: {seen:?}");
+    assert!((seen.stated / seen.actual - 1.0).abs() < 0.06, "{name}: {seen:?}");
+    let flagged = seen.pixel_tail_index > HEAVY_PIXEL_TAIL;
+    assert!(flagged || (0.925..=0.975).contains(&seen.pixels), "{name}: {seen:?}");
 }
 
 fn calls_for(prepared: &Prepared, effect: EffectName) -> bool {
@@ -69,7 +69,7 @@ fn with_light_paths() {
     let shade = json!({"name": "shade", "material": "black", "shape": {"type": "disk", "center_m": [0, 1, 0], "normal": [0, 1, 0], "radius_m": 0.6}});
     let scene = floor_within(
         40.0,
-        &[mirror, shade, lamp(&ball([0.0, 1.5, 0.0], 0.1), 30.0)],
+        &[mirror, shade, lamp(&ball([0.0, 1.5, 0.0], 0.2), 30.0)],
         &json!([]),
         &json!({"spp": 64, "light_tracing": "always"}),
     );
@@ -86,7 +86,7 @@ fn with_specular_connections() {
 
 #[test]
 fn with_shadow_rays_through_glass() {
-    let lamp = lamp(&ball([0.3, 2.0, 0.0], 0.3), 5.0);
+    let lamp = lamp(&ball([0.3, 2.5, 0.0], 1.2), 5.0);
     let scene = floor(&[plate(), lamp], &json!([]), &json!({"spp": 64, "light_tracing": "never"}));
     // No trial decides otherwise.
     let study = Study { by_cosine_alone: true, ..Study::default() };
@@ -102,7 +102,7 @@ fn with_guided_directions() {
     let scene = floor(
         &[ring, lamp(&ball([1.0, 2.0, 0.6], 0.5), 5.0)],
         &json!([]),
-        &json!({"spp": 128, "light_tracing": "never"}),
+        &json!({"spp": 512, "light_tracing": "never"}),
     );
     let mut prepared = prepare(&scene).unwrap();
     assert!(prepared.guided_targets().1 > 0, "{:?}", prepared.guided_targets());
@@ -127,8 +127,8 @@ fn with_many_unequal_lamps() {
 fn in_fog() {
     let fog = json!({"name": "fog", "material": {"type": "boundary", "medium": {"scattering_per_m": 0.4, "absorption_per_m": 0.1}},
         "shape": {"type": "box", "min_m": [-3, -1, -3], "max_m": [3, 1, 3]}});
-    let point = json!([{"type": "point", "name": "lamp", "position_m": [0.2, 0.5, 0], "intensity": 1}]);
-    let mut prepared = prepare(&floor(&[fog], &point, &json!({"spp": 128}))).unwrap();
+    let point = json!([{"type": "point", "name": "lamp", "position_m": [0.2, 2, 0], "intensity": 1}]);
+    let mut prepared = prepare(&floor(&[fog], &point, &json!({"spp": 64}))).unwrap();
     assert!(calls_for(&prepared, EffectName::Scattering));
     check("fog", &coverage_of(&mut prepared, SEEDS));
 }
