@@ -82,6 +82,25 @@ fn the_interval_of_the_error_holds_the_truth_whatever_the_distribution() {
     }
 }
 
+/// One pixel of 64 carries nearly all of the error. Then 93 % of the intervals hold it; with the normal distribution 84 % would. 1600 trials tell a share to
+/// 0.7 %: the bound of 90 % is four standard errors from both.
+#[test]
+fn the_interval_of_the_error_holds_the_truth_though_one_pixel_carries_it() {
+    let mut numbers = Uniform::new(17);
+    let deviation = |pixel: u32| -> f64 { if pixel == 0 { 0.5 } else { 0.02 } };
+    let truth = ((0..64).map(|pixel| deviation(pixel).powi(2) / 4.0).sum::<f64>() / 64.0).sqrt();
+    let held = (0..1600).filter(|_| {
+        let film = film(8, 4, |pixel| {
+            let radius = (-2.0 * (1.0 - numbers.number()).ln()).sqrt();
+            1.0 + deviation(pixel) * radius * (2.0 * PI * numbers.number()).cos()
+        });
+        let [low, high] = film.error(whole(&film)).unwrap().interval;
+        (low..=high).contains(&truth)
+    });
+    let held = held.count();
+    assert!((1440..=1560).contains(&held), "{held} of 1600");
+}
+
 #[test]
 fn the_noisiest_tile_is_found() {
     let mut numbers = Uniform::new(7);
