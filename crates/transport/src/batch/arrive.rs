@@ -67,7 +67,7 @@ impl<M: WavelengthModel<N>, P: Polarisation<N>, const N: usize> Batch<'_, M, P, 
         let mut looks = [Look::BLACK; LANES];
         let sky = if escapes.count_ones() >= FEWEST_LOOKS { world.first_image_of_the_sky() } else { None };
         if let Some(sky) = sky {
-            look_at_sky(self.level, sky, &rays.direction, &mut looks);
+            look_at_sky(self.level, sky, &rays.direction, escapes, &mut looks);
         }
         let mut scatters = 0;
         for lane in lanes(active.into()) {

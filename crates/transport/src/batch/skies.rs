@@ -2,7 +2,7 @@
 
 use super::lamps::LightSamples;
 use super::level::{Level, stages};
-use super::rows::{Mask, W};
+use super::rows::{Mask, W, lanes};
 use crate::light::{EnvironmentLight, Light, LightSample, Look};
 use etalon_geometry::LANES;
 use etalon_optics::Vec3;
@@ -36,24 +36,40 @@ impl SkyLights {
 }
 
 stages! {
-    /// Directions toward a sky for the paths of `mask`, in place of those that are there.
+    /// Directions toward a sky for the paths of `mask`, in place of those that are there. As many are computed side by side as are cast at once, and only those that are
+    /// wanted: the texels of each are far from those of the others.
     fn aim_at_sky(sky: &EnvironmentLight, u: [&[f64; W]; 2], mask: Mask, skies: &mut SkyLights, light_samples: &mut LightSamples) {
-        let (wi, looks) = sky.sample_row(u);
-        for lane in 0..W {
-            if mask >> lane & 1 == 1 {
-                light_samples.wi.set(lane, wi[lane]);
-                light_samples.density.0[lane] = looks[lane].density;
-                skies.looks[lane] = looks[lane];
+        let mut left = mask;
+        while left != 0 {
+            let mut from = [left.trailing_zeros() as usize; LANES];
+            let count = LANES.min(left.count_ones() as usize);
+            for (place, lane) in lanes(left).take(LANES).enumerate() {
+                from[place] = lane;
+                left &= !(1 << lane);
+            }
+            let (mut u0, mut u1) = ([0.0; LANES], [0.0; LANES]);
+            for place in 0..LANES {
+                (u0[place], u1[place]) = (u[0][from[place] % W], u[1][from[place] % W]);
+            }
+            let (wi, looks) = sky.sample_row([&u0, &u1]);
+            for place in 0..count {
+                let lane = from[place] % W;
+                light_samples.wi.set(lane, wi[place]);
+                light_samples.density.0[lane] = looks[place].density;
+                skies.looks[lane] = looks[place];
             }
         }
     }
 
-    /// What a sky shows along some rays.
-    fn look_at_sky(sky: &EnvironmentLight, directions: &[[f64; LANES]; 3], looks: &mut [Look; LANES]) {
+    /// What a sky shows along the rays of `mask`.
+    fn look_at_sky(sky: &EnvironmentLight, directions: &[[f64; LANES]; 3], mask: u8, looks: &mut [Look; LANES]) {
         let [x, y, z] = directions;
+        // The others look where one of these does: what they would see would have to be fetched.
+        let first = mask.trailing_zeros() as usize % LANES;
         let mut wi = [Vec3::ZERO; LANES];
         for lane in 0..LANES {
-            wi[lane] = Vec3::new(x[lane], y[lane], z[lane]);
+            let from = if mask >> lane & 1 == 1 { lane } else { first };
+            wi[lane] = Vec3::new(x[from], y[from], z[from]);
         }
         *looks = sky.look_row(&wi);
     }

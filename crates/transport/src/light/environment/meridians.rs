@@ -42,6 +42,7 @@ pub(in crate::light) struct Meridians {
 }
 
 /// Where a direction stands between the centres of texels.
+#[derive(Clone, Copy)]
 struct Place {
     /// Columns of texels to the left and to the right.
     columns: [usize; 2],
@@ -51,6 +52,10 @@ struct Place {
     across: f64,
     down: f64,
     down_by_cosine: f64,
+}
+
+impl Place {
+    const FIRST: Self = Self { columns: [0; 2], row: 0, across: 0.0, down: 0.0, down_by_cosine: 0.0 };
 }
 
 impl Meridians {
@@ -90,9 +95,23 @@ impl Meridians {
         for k in 0..W {
             [columns[k], rows[k]] = self.coordinates(wi[k]);
         }
+        let mut places = [Place::FIRST; W];
+        for k in 0..W {
+            places[k] = self.place([columns[k], rows[k]], wi[k].up);
+        }
+        // In a loop of its own: most texels miss the cache, and so they do not wait for one another.
+        let mut corners = [[[0.0; 3]; 4]; W];
+        for k in 0..W {
+            let [left, right] = places[k].columns;
+            let [above, below] = self.rows_around(places[k].row);
+            corners[k][0] = image.texel(left, above);
+            corners[k][1] = image.texel(right, above);
+            corners[k][2] = image.texel(left, below);
+            corners[k][3] = image.texel(right, below);
+        }
         let mut looks = [Look::BLACK; W];
         for k in 0..W {
-            looks[k] = self.interpolate(image, self.place([columns[k], rows[k]], wi[k].up));
+            looks[k] = self.interpolate(&corners[k], &places[k]);
         }
         looks
     }
@@ -160,14 +179,16 @@ impl Meridians {
     }
 
     #[inline(always)]
-    fn interpolate(&self, image: &Image, place: Place) -> Look {
-        let [left, right] = place.columns;
-        let [above, below] = self.rows_around(place.row);
-        let texels = [(left, above), (right, above), (left, below), (right, below)].map(|(x, y)| image.texel(x, y));
+    fn interpolate(&self, texels: &[[f64; 3]; 4], place: &Place) -> Look {
         // Along both rows of texels, from which the colour mixes by angle and the density by cosine.
-        let [upper, lower] = [mix(texels[0], texels[1], place.across), mix(texels[2], texels[3], place.across)];
+        let upper = mix(texels[0], texels[1], place.across);
+        let lower = mix(texels[2], texels[3], place.across);
         let colour = mix(upper, lower, place.down);
-        let [a, b, c, d] = texels.map(|texel| self.above.of(rec709_luminance(texel)));
+        let mut brightness = [0.0; 4];
+        for corner in 0..4 {
+            brightness[corner] = self.above.of(rec709_luminance(texels[corner]));
+        }
+        let [a, b, c, d] = brightness;
         let (upper, lower) = (a + place.across * (b - a), c + place.across * (d - c));
         Look { colour, density: self.above.density(upper + place.down_by_cosine * (lower - upper)) }
     }
